@@ -173,7 +173,11 @@ void run(const DesignArguments& arguments, const Session& session) {
   directory.write(camera, result, options, policy);
   write_report(session, directory.path(), policy);
   print_design(session, camera, result, options);
-  session.say(fmt::format("wrote {}", (directory.path() / "report.html").string()));
+  const std::string folder = directory.path().string();
+  session.say(
+      fmt::format("wrote {0}/report.html\nnext: tofsmith export {0}/codes/{1}.code.json --camera "
+                  "{0}/camera.toml --format FORMAT -o waveforms",
+                  folder, result.winner().code.name()));
 }
 
 }  // namespace
@@ -182,8 +186,8 @@ void add_design_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<DesignArguments>();
   CLI::App* command =
       app.add_subcommand("design", "design modulation and demodulation functions for a camera");
-  arguments->camera.add_positional(*command);
   arguments->camera.add_to(*command);
+  arguments->camera.add_positional(*command);
   const FieldOptions options(*command, arguments->options);
   options.add("method", "--method");
   command->add_option("--target", arguments->target,
