@@ -213,6 +213,7 @@ evaluate good.toml sinusoid-k4 | good.toml; camera; --camera
 evaluate columns.csv | columns.csv; modulation_1
 evaluate cut.code.json | cut.code.json:1
 evaluate Sinusoid_K4 | did you mean sinusoid-k4?
+evaluate gray | did you mean gray-k4?
 evaluate sinusoid | did you mean sinusoid-k4?
 evaluate --code sinusoid-k4 | unknown option '--code'
 evaluate sinusoid-k4 --camera khz.toml | khz.toml:1; 20 MHz are 20e6
@@ -289,6 +290,8 @@ NOTED = """
 decode mixed.npy -o a.npy | raw numbers do not fit this code; --order 0,2,1,3
 decode mixed.npy --camera paper-10f0 -o b.npy | warning: the camera differs from mixed.camera.toml
 decode mixed.npy --code square-k4 -o c.npy | warning: the code square-k4 differs from mixed.code.json
+evaluate sinusoid-k4 --camera indoor --set optics.pixel_pitch_m=7 --distance 3 | check the unit
+decode mixed.npy --offset-m 1500 -o e.npy | check that they are in metres
 decode broken.npy --code sinusoid-k4 --camera good.toml -o d.npy | warning: broken.camera.toml:1; not used
 """.strip().splitlines()
 
@@ -332,9 +335,10 @@ class WrongInputs(CommandLineTest):
         for row in NOTED:
             command, words = row.split(" | ")
             with self.subTest(command=command):
-                answer = self.do(*shlex.split(command))
+                code, out, error = self.run_tool(*shlex.split(command))
+                self.assertEqual(code, 0)
                 for word in words.split("; "):
-                    self.assertIn(word, answer)
+                    self.assertIn(word, out.decode() + error)
 
 
 if __name__ == "__main__":

@@ -56,9 +56,10 @@ struct Optics {
 
 /// Keys of [optics].
 inline void describe(FieldVisitor& fields, Optics& optics) {
-  fields.value(
-      Key("source_power_w", "Mean optical power of the modulated light", above(0)).required("0.5"),
-      optics.source_power_w);
+  fields.value(Key("source_power_w", "Mean optical power of the modulated light", above(0))
+                   .required("0.5")
+                   .usually(0.01, 10),
+               optics.source_power_w);
   fields.value(Key("wavelength_m", "Wavelength of the modulated light", closed(200e-9, 20e-6))
                    .required("850e-9"),
                optics.wavelength_m);
@@ -66,10 +67,13 @@ inline void describe(FieldVisitor& fields, Optics& optics) {
                    open(0, 180))
                    .required("[70, 55]"),
                optics.field_of_view_deg);
-  fields.value(
-      Key("f_number", "Focal length divided by the aperture of the lens", above(0)).required("1.4"),
-      optics.f_number);
-  fields.value(Key("pixel_pitch_m", "Distance between pixel centres", above(0)).required("10e-6"),
+  fields.value(Key("f_number", "Focal length divided by the aperture of the lens", above(0))
+                   .required("1.4")
+                   .usually(0.8, 4),
+               optics.f_number);
+  fields.value(Key("pixel_pitch_m", "Distance between pixel centres", above(0))
+                   .required("10e-6")
+                   .usually(2e-6, 5e-5),
                optics.pixel_pitch_m);
   fields.value(
       Key("quantum_efficiency", "Electrons per photon on the sensitive area", left_open(0, 1))

@@ -22,7 +22,11 @@ std::string near_family(const std::string& name) {
   for (const FamilyDescription& family : list_families()) known.push_back(family.example);
   std::string in_lower_case = name;
   std::ranges::transform(in_lower_case, in_lower_case.begin(), lower_case);
-  std::string near = nearest_word(in_lower_case, known);
+  const auto begins_with_name = [&](const std::string& family) {
+    return family.starts_with(in_lower_case + "-");
+  };
+  const auto named = std::ranges::find_if(known, begins_with_name);
+  std::string near = named != known.end() ? *named : nearest_word(in_lower_case, known);
   if (near.empty()) return "; `tofsmith codes` lists them";
   // Keep the user's number; only the word before it is wrong.
   const auto without_number = [](const std::string& word) {

@@ -277,6 +277,8 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
   if (const auto note = repeated_offset_note(table, corrections.maps.delay_offset_m))
     result.notes.push_back(*note);
+  if (const auto note = large_offset_note(table, corrections.maps.delay_offset_m))
+    result.notes.push_back(*note);
   decode_frames(reader, preparation, rows, pipelines, corrections, output, progress, result);
   const StatusCounts total = result.total();
   if (const auto note = no_depth_note(total)) result.notes.push_back(*note);

@@ -65,6 +65,18 @@ std::optional<std::string> repeated_offset_note(const DecodingTable& table,
       table.playback_offset_m, mean_m, table.playback_offset_m + mean_m);
 }
 
+std::optional<std::string> large_offset_note(const DecodingTable& table,
+                                             const Image<float>& offset_m) {
+  double largest_m = 0.0;
+  for (const float offset : offset_m.pixels)
+    if (std::isfinite(offset)) largest_m = std::max(largest_m, std::abs(double{offset}));
+  if (largest_m <= table.range_m) return std::nullopt;
+  return fmt::format(
+      "offsets of pixels reach {:.4g} m, more than the unambiguous range of {:.4g} m; check that "
+      "they are in metres",
+      largest_m, table.range_m);
+}
+
 std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
   constexpr std::array without_depth = {PixelStatus::invalid, PixelStatus::no_return,
                                         PixelStatus::saturated, PixelStatus::too_near,

@@ -16,6 +16,9 @@ std::optional<std::string> electrons_note(const RawFramesReader& reader,
 /// constant.
 std::optional<std::string> repeated_offset_note(const DecodingTable& table,
                                                 const Image<float>& offset_m);
+/// Note if the offset of a pixel exceeds the unambiguous range: its unit may not be metres.
+std::optional<std::string> large_offset_note(const DecodingTable& table,
+                                             const Image<float>& offset_m);
 /// Note if no pixel of any frame has a depth.
 std::optional<std::string> no_depth_note(const StatusCounts& statuses);
 /// Warning if more than 10 % of the pixels of all frames are inconsistent.
