@@ -60,7 +60,7 @@ std::string camera_keys_json();
 std::string camera_to_toml(const Camera& camera);
 /// Returns a calibrated camera as TOML without optional keys that equal their default, so that the
 /// file contains no values that nobody specified.
-/// @param assumed  values that equal those of this camera have a comment; null: no comments
+/// @param assumed  camera whose values have a comment in the file; null: no comments
 std::string calibrated_camera_toml(const Camera& camera, const Camera* assumed);
 /// Returns a lens as JSON on one line, with the keys of a camera file.
 std::string lens_to_json(const Lens& lens);
