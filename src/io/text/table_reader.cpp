@@ -113,10 +113,10 @@ toml::table parse_setting(const std::string& setting) {
         return toml::parse(*quoted, describe_setting(setting));
       } catch (const toml::parse_error&) {  // report the error in the user's text
       }
-    throw IoError(describe_setting(setting),
-                  fmt::format("{}{}", error.description(),
-                              setting.find('=') == setting.npos ? "; expected key = value"
-                                                                : toml_hint(setting, 1)));
+    const std::string hint = setting.find('=') == setting.npos ? "" : toml_hint(setting, 1);
+    throw IoError(
+        describe_setting(setting),
+        fmt::format("{}{}", error.description(), hint.empty() ? "; expected key = value" : hint));
   }
 }
 
