@@ -3,10 +3,13 @@
 #include "tofsmith/code/code_set.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "code/shared/exposure_groups.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -189,6 +192,20 @@ CodeSet CodeSet::with_exposure_shares(std::vector<double> shares) const {
   });
   CodeSet copy = *this;
   copy.exposure_shares_ = are_alike ? std::vector<double>() : std::move(shares);
+  return copy;
+}
+
+CodeSet CodeSet::with_exposure_order(const std::vector<int>& order) const {
+  std::vector<int> sorted = order, all(static_cast<std::size_t>(exposures()));
+  std::sort(sorted.begin(), sorted.end());
+  std::iota(all.begin(), all.end(), 0);
+  require(sorted == all, "exposure order", fmt::format("{}", fmt::join(order, ", ")),
+          fmt::format("must list each of the {} exposures once, from 0", exposures()));
+  CodeSet copy = *this;
+  copy.modulation_ = in_exposure_order(modulation_, order);
+  copy.demodulation_ = in_exposure_order(demodulation_, order);
+  copy.exposure_shares_ = in_exposure_order(exposure_shares_, order);
+  copy.provenance.residuals = in_exposure_order(provenance.residuals, order);
   return copy;
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "same_code.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
@@ -39,6 +40,23 @@ TEST(ExposureShares, StayWithTheCode) {
     EXPECT_EQ(other.exposure_shares(), code.exposure_shares()) << other.name();
   EXPECT_TRUE(code.with_exposure_shares({}).exposure_shares().empty());
   EXPECT_TRUE(code.with_exposure_shares({0.25, 0.25, 0.25, 0.25}).exposure_shares().empty());
+}
+
+TEST(ExposureOrder, MovesAllThatBelongsToAnExposure) {
+  CodeSet code =
+      make_family("square-k4", {}).with_two_buckets().with_exposure_shares({0.4, 0.3, 0.2, 0.1});
+  code.provenance.residuals = {0, 1, 2, 3, 4, 5, 6, 7};
+  const CodeSet moved = code.with_exposure_order({2, 0, 3, 1});
+  EXPECT_EQ(moved.modulation(0), code.modulation(2));
+  EXPECT_EQ(moved.demodulation(0), code.demodulation(4));
+  EXPECT_EQ(moved.demodulation(1), code.demodulation(5));
+  EXPECT_EQ(moved.exposure_shares(), (std::vector{0.2, 0.4, 0.1, 0.3}));
+  EXPECT_EQ(moved.provenance.residuals, (std::vector<double>{4, 5, 0, 1, 6, 7, 2, 3}));
+  expect_same_code(moved.with_exposure_order({1, 3, 0, 2}), code);
+  for (const std::vector<int>& wrong :
+       {std::vector{0, 1, 2}, std::vector{0, 1, 2, 2}, std::vector{1, 2, 3, 4}})
+    EXPECT_THAT([&] { code.with_exposure_order(wrong); },
+                breaks("exposure order", "each of the 4 exposures once"));
 }
 
 TEST(ExposureShares, MustAddUpToOne) {

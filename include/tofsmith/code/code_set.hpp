@@ -182,6 +182,10 @@ class CodeSet {
   /// @param shares  > 0, of sum 1; empty: equal shares
   /// @throws InvalidArgument naming the share and the rule
   CodeSet with_exposure_shares(std::vector<double> shares) const;
+  /// Returns the same code with its exposures, and all that belongs to them, in another order.
+  /// @param order  present number of each new exposure: a permutation of 0, 1, ...
+  /// @throws InvalidArgument naming the rule
+  CodeSet with_exposure_order(const std::vector<int>& order) const;
   /// Empty: equal shares.
   const std::vector<double>& exposure_shares() const { return exposure_shares_; }
 
