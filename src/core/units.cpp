@@ -11,9 +11,11 @@
 namespace tofsmith {
 
 std::string_view unit_of_key(std::string_view name) {
-  // "_e_per_s" also ends with "_s".
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 23> units = {{
+  // Longer endings come first: "_e_per_s" also ends with "_s".
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 25> units = {{
       {"_e_per_s", "e/s"},
+      {"_m_per_s", "m/s"},
+      {"_deg_per_s", "degrees/s"},
       {"_e_per_dn", "e/DN"},
       {"_w_per_m2_nm", "W/m2/nm"},
       {"_m_per_c", "m/degree C"},

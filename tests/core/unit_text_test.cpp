@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "tofsmith/core/units.hpp"
+
 namespace tofsmith {
 namespace {
 
@@ -21,6 +23,8 @@ TEST(UnitText, ConvertsNumbersToTheUnitOfAKey) {
         {"10 um", "m", 1e-5},
         {"20 ms", "s", 0.02},
         {"100ns", "s", 100e-9},
+        {"2m/s", unit_of_key("velocity_m_per_s"), 2.0},
+        {"30 cm/s", unit_of_key("velocity_m_per_s"), 0.3},
         {"20klx", "klx", 20.0},
         {"20000 lux", "klx", 20.0},
         {"1 GB", "MB", 1000.0},
