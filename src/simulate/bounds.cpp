@@ -73,8 +73,7 @@ double DirectTofBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
 namespace {
 
 int cells_of(const ForwardModel& model, std::optional<int> per_bin) {
-  if (!per_bin)
-    per_bin = model.has_rows() ? cells_per_bin : model.straight_points_per_bin(cells_per_bin);
+  if (!per_bin) per_bin = default_cells_per_bin(model);
   require(*per_bin >= 1, "cells_per_bin", *per_bin, "must be >= 1");
   return *per_bin * model.samples();
 }

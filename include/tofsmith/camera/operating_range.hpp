@@ -103,6 +103,9 @@ struct OperatingRange {
   std::optional<OperatingMultipath> multipath = {};
   std::optional<std::array<double, 2>> working_distance_m = {};
   std::optional<std::vector<double>> depths = {};
+  /// Velocity of surfaces along the ray [m/s], positive: away from the camera. Designs choose the
+  /// order of exposures for it. None: static surfaces.
+  std::optional<double> velocity_m_per_s = {};
 
   /// All pairs, in the order of the signals.
   std::vector<OperatingPoint> points() const;
@@ -156,6 +159,11 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                    "without it, all depths are equally frequent",
                    at_least(0)),
                range.depths);
+  fields.value(Key("velocity_m_per_s",
+                   "Velocity of surfaces along the ray; positive: away from the camera; without "
+                   "it, surfaces are static",
+                   closed(-1000, 1000)),
+               range.velocity_m_per_s);
   fields.table(Key("multipath", "Multipath that designs take into account"), range.multipath);
 }
 

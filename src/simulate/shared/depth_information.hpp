@@ -4,12 +4,17 @@
 
 #include <Eigen/Core>
 
+#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 /// Depths per bin in a Cramer-Rao bound.
 constexpr int cells_per_bin = 4;
+/// Returns this number, or more if the highest harmonics of the correlation functions require it.
+inline int default_cells_per_bin(const ForwardModel& model) {
+  return model.has_rows() ? cells_per_bin : model.straight_points_per_bin(cells_per_bin);
+}
 constexpr double min_e2 = 1e-9;  // avoids 0 / 0 without light and noise
 
 /// Returns values at the centre of cells and slopes over each cell, from a table of twice as many

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+
+namespace tofsmith {
+
+/// Returns how far a surface has moved along the ray from the middle of a frame to the middle of
+/// each exposure [m], in the order in which the camera captures them.
+/// @param velocity_m_per_s  positive: away from the camera
+/// @throws std::invalid_argument if the camera lists times for another number of exposures
+Eigen::VectorXd exposure_shifts_m(const CodeSet& code, const Camera& camera,
+                                  double velocity_m_per_s);
+/// As above for a camera that lists a time for each exposure.
+Eigen::VectorXd exposure_shifts_m(const Camera& timed, double velocity_m_per_s);
+
+/// Depth error that DecodeMethod::zncc makes without noise if each exposure sees another depth, to
+/// first order in the shifts d_e of the exposures:
+///   error(z) = sum_e c_e(z) d_e,   c_e = sum_(i in e) g_i x'_i / |g|^2,   sum_e c_e = 1,
+/// where x' is the derivative of the expected measurements and g is its component orthogonal to the
+/// derivatives with respect to signal and ambient light. The decoded depth is therefore the depth
+/// of a moving surface at the weighted mean sum_e c_e t_e of the times of the exposures.
+class MotionBias {
+ public:
+  /// @param camera  the camera of `model`
+  MotionBias(const ForwardModel& model, const Camera& camera);
+
+  int exposures() const { return static_cast<int>(mean_share_.size()); }
+  /// Mean over the camera's depths of the error [m]. @param shift_m  (exposures)
+  double mean_m(const Eigen::VectorXd& shift_m) const { return mean_share_.dot(shift_m); }
+  /// Root mean square over the camera's depths of the error [m]. @param shift_m  (exposures)
+  double rms_m(const Eigen::VectorXd& shift_m) const;
+
+ private:
+  Eigen::VectorXd mean_share_;    // mean of c
+  Eigen::MatrixXd mean_product_;  // mean of c c^T
+};
+
+/// Shares of trials whose exposures saw different depths. A depth is wrong if it deviates from all
+/// true depths by more than three times its `deviation_m`.
+struct WrongShares {
+  double wrong = 0.0;
+  double wrong_ok = 0.0;            ///< wrong, but with status ok
+  double wrong_inconsistent = 0.0;  ///< wrong, with status inconsistent
+  double inconsistent = 0.0;        ///< status inconsistent
+
+  /// Share of the wrong depths that are inconsistent; none without wrong depths.
+  std::optional<double> detected() const;
+};
+auto fields_of(ConstOrNot<WrongShares> auto& s) {
+  return std::tuple(Field("wrong", s.wrong, closed(0, 1)),
+                    Field("wrong_ok", s.wrong_ok, closed(0, 1)),
+                    Field("wrong_inconsistent", s.wrong_inconsistent, closed(0, 1)),
+                    Field("inconsistent", s.inconsistent, closed(0, 1)));
+}
+
+/// Errors at one operating point.
+struct MotionPoint {
+  OperatingPoint point;
+  Estimate circular_mde_m;  ///< mean distance from the nearest true depth, wrapped
+  Estimate bias_m;          ///< mean difference from the nearest true depth
+  WrongShares shares;
+};
+auto fields_of(ConstOrNot<MotionPoint> auto& p) {
+  return std::tuple(Field("point", p.point, FieldMark::in_place),
+                    Field("circular_mde_m", p.circular_mde_m, at_least(0)),
+                    Field("bias_m", p.bias_m), Field("shares", p.shares, FieldMark::in_place));
+}
+
+/// Errors at all operating points.
+struct MotionErrors {
+  Estimate geometric_mean_m;        ///< of the circular errors
+  WrongShares shares;               ///< means over the operating points
+  std::vector<MotionPoint> points;  ///< in the order of OperatingRange::points()
+};
+auto fields_of(ConstOrNot<MotionErrors> auto& e) {
+  return std::tuple(Field("geometric_mean_m", e.geometric_mean_m, at_least(0)),
+                    Field("shares", e.shares, FieldMark::in_place), Field("points", e.points));
+}
+
+/// Effect of motion while the exposures of a frame follow one another.
+struct MotionReport {
+  double velocity_m_per_s = 0.0;
+  double rms_bias_m = 0.0;   ///< MotionBias::rms_m()
+  double mean_bias_m = 0.0;  ///< MotionBias::mean_m()
+  MotionErrors surface;      ///< of a moving surface; true depth: in the middle of the frame
+  /// At an edge that passes between two exposures; true depths: both surfaces. Codes with one
+  /// exposure have no points.
+  MotionErrors edge;
+};
+auto fields_of(ConstOrNot<MotionReport> auto& r) {
+  return std::tuple(
+      Field("velocity_m_per_s", r.velocity_m_per_s), Field("rms_bias_m", r.rms_bias_m, at_least(0)),
+      Field("mean_bias_m", r.mean_bias_m), Field("surface", r.surface), Field("edge", r.edge));
+}
+
+/// Computes the depth error of a surface that moves along the ray, and of an edge that passes
+/// between two exposures, by Monte Carlo simulation with the decoder of `options.method`.
+///
+/// Each exposure sees the depth in its middle; there is no blur within an exposure, and the signal
+/// does not depend on the depth. Trial t draws a depth in the t-th of `trials` slices with equal
+/// probability, as evaluate(). For an edge, this is the first surface. The second one is drawn from
+/// the same distribution, and the number of exposures that see the first one is uniform.
+/// @param options  trials, seed, method and unwrap_weights are used
+/// @throws std::invalid_argument as evaluate(); Interrupted if `progress` cancels
+/// @note same bits for any number of threads
+MotionReport motion_error(const CodeSet& code, const Camera& camera, double velocity_m_per_s,
+                          const EvaluateOptions& options = {}, const Progress& progress = {});
+
+}  // namespace tofsmith
