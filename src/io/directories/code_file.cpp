@@ -21,11 +21,11 @@ std::string near_family(const std::string& name) {
   std::vector<std::string> known;
   for (const FamilyDescription& family : list_families()) known.push_back(family.example);
   std::string in_lower_case = name;
-  std::ranges::transform(in_lower_case, in_lower_case.begin(), lower_case);
+  std::transform(name.begin(), name.end(), in_lower_case.begin(), lower_case);
   const auto begins_with_name = [&](const std::string& family) {
     return family.starts_with(in_lower_case + "-");
   };
-  const auto named = std::ranges::find_if(known, begins_with_name);
+  const auto named = std::find_if(known.begin(), known.end(), begins_with_name);
   std::string near = named != known.end() ? *named : nearest_word(in_lower_case, known);
   if (near.empty()) return "; `tofsmith codes` lists them";
   // Keep the user's number; only the word before it is wrong.
