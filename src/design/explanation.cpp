@@ -46,8 +46,7 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result,
   if (const Candidate* baseline = best_baseline(result, measure)) {
     const Estimate gain = gain_over(result, *baseline, measure);
     text += fmt::format(
-        "; the error of {}, the best {}standard code{}, is {:.2f} ± {:.2f} times "
-        "as large",
+        "; the error of {}, the best {}standard code{}, is {:.2f} ± {:.2f} times as large",
         baseline->code.name(), is_standard ? "other " : "",
         among.empty() ? "" : " with any number of exposures", gain.value, gain.standard_error);
   }

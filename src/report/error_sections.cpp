@@ -92,9 +92,9 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
                   "Errors are geometric means over {} operating points; the column arithmetic "
                   "contains the arithmetic mean of the circular error. Each operating point has {} "
                   "trials with N = {} samples per period and true depths {}; ± is one "
-                  "standard error. K is the number of measurements. Errors are mean absolute "
-                  "errors; rms columns contain root mean square errors, in which rare large errors "
-                  "dominate. Outliers are circular errors above {:.2g} m.",
+                  "standard error. A tap is a value read out of an exposure. Errors are mean "
+                  "absolute errors; rms columns contain root mean square errors, in which rare "
+                  "large errors dominate. Outliers are circular errors above {:.2g} m.",
                   first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
                   first.outlier_threshold_m),
               .columns = {{"code"},

@@ -54,10 +54,9 @@ std::optional<std::string> dim_light_note(const Camera& camera, const DesignResu
   if (ambient.front() > 0.0) ambient.insert(ambient.begin(), dim_share * ambient.front());
   return fmt::format(
       "At a tenth of the lowest signal (S = {:g} e/s, with a tenth of the ambient light), the "
-      "error "
-      "of the best code is {} mm and the error of {} is {} mm. If the light can be so dim, include "
-      "these levels in the design: "
-      "operating.signal_e_per_s = [{:g}] and operating.ambient_e_per_s = [{:g}].",
+      "error of the best code is {} mm and the error of {} is {} mm. If the light can be so dim, "
+      "include these levels in the design: operating.signal_e_per_s = [{:g}] and "
+      "operating.ambient_e_per_s = [{:g}].",
       signal.front(), plain_number(1e3 * its.value, 3), best->code.name(),
       plain_number(1e3 * least.value, 3), fmt::join(signal, ", "), fmt::join(ambient, ", "));
 }
