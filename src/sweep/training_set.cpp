@@ -221,7 +221,7 @@ TrainingSetRun TrainingSetWriter::write_index(
       ++(outcome.is_new ? run.written : run.kept);
     } else {
       index["failures"].push_back({{"name", scenes[i].name}, {"problem", outcome.problem}});
-      run.failures.push_back(outcome.problem.starts_with(scenes[i].name)
+      run.failures.push_back(outcome.problem.starts_with(scenes[i].name + ":")
                                  ? outcome.problem
                                  : fmt::format("{}: {}", scenes[i].name, outcome.problem));
     }

@@ -130,7 +130,7 @@ TEST(TrainingSet, AnInvalidSceneDoesNotAffectOthers) {
   const TrainingSetRun run = write(directory.path(), {"1", "bad", "2"});
   EXPECT_EQ(run.written, 2);
   ASSERT_EQ(run.failures.size(), 1u);
-  EXPECT_EQ(run.failures[0], "bad: bad: is no scene");
+  EXPECT_EQ(run.failures[0], "bad: is no scene");
 }
 
 TEST(TrainingSet, RejectsInvalidRanges) {
