@@ -217,6 +217,7 @@ std::vector<std::string> family_members(const FamilyOptions& options, int highes
       names.push_back(fmt::format("{}-k{}", family, k));
   for (int q = 2; q <= highest_frequency; ++q) {
     for (const int low_steps : {2, 3}) names.push_back(pulsed_multi_frequency_name(low_steps, q));
+    names.push_back(fmt::format("burst-k5-q{}", q));
     for (int low_steps = 2; low_steps <= max_steps; ++low_steps)
       for (int steps = 2; steps <= max_steps; ++steps)
         if (q != 7 || low_steps != 3 || steps != 2)  // this code has its own name
