@@ -437,6 +437,17 @@ TEST(CameraSettings, AreReportedInErrorMessages) {
   EXPECT_THAT(broken_by("=5"), HasSubstr("expected key = value"));
 }
 
+TEST(CalibratedCamera, IsReadBackWithItsOptionalTables) {
+  Camera camera = built_in_camera("indoor");
+  EXPECT_EQ(parse_camera_toml(calibrated_camera_toml(camera, nullptr)), camera);
+  EXPECT_EQ(parse_camera_toml(calibrated_camera_toml(camera, &camera)), camera);
+  camera.light.generator.emplace();
+  camera.operating.multipath.emplace();
+  camera.playback.emplace();
+  camera.temperature.emplace().sensor.emplace();
+  EXPECT_EQ(parse_camera_toml(calibrated_camera_toml(camera, nullptr)), camera);
+}
+
 TEST(LoadCamera, AcceptsABuiltInNameOrAFile) {
   EXPECT_EQ(load_camera("paper-10f0"), built_in_camera("paper-10f0"));
   const TemporaryDirectory directory;

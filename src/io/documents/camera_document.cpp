@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <sstream>
 
 #include "io/documents/shared/document_text.hpp"
@@ -73,11 +74,18 @@ nlohmann::ordered_json::json_pointer pointer_to(std::string key) {
 }
 
 /// Removes optional keys that equal their default, except the name, and tables that become empty.
+/// Optional tables such as [light.generator] keep their last key, because without the table the
+/// camera has no generator.
 void remove_defaults(nlohmann::ordered_json& document) {
   using Place = nlohmann::ordered_json::json_pointer;
+  std::set<std::string> optional_tables;
+  for (const KeyDescription& key : describe_camera_keys(Camera()))
+    if (key.type == ValueType::table && key.may_be_absent)
+      optional_tables.insert(pointer_to(key.name).to_string());
   const auto remove = [&](const Place& place, const nlohmann::ordered_json& usual) {
     if (!document.contains(place) || document[place] != usual) return;
     const Place table = place.parent_pointer();
+    if (document[table].size() == 1 && optional_tables.contains(table.to_string())) return;
     document[table].erase(place.back());
     if (document[table].empty() && !table.empty())
       document[table.parent_pointer()].erase(table.back());
