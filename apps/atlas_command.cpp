@@ -132,8 +132,8 @@ void run_atlas(const AtlasArguments& arguments, const Session& session) {
   const std::vector<AtlasEntry> entries = chosen_entries(arguments);
   if (entries.empty())
     throw UsageError(
-        "found no code for these taps, exposures, peak factors and errors; `tofsmith atlas` lists "
-        "the available ones");
+        "found no code for these taps, exposures, peak factors, bandwidths and errors; `tofsmith "
+        "atlas` lists the available ones");
   if (!arguments.output.empty())
     write_file_atomically(output,
                           output.extension() == ".csv"
