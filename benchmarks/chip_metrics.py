@@ -29,7 +29,7 @@ def camera_of(taps, chips, light):
     base = ts.Camera("exclusive-3tap-9chip")
     return base.replace(
         samples=40 * chips,
-        sensor={**base.sensor.to_dict(), "taps": taps, "shortest_pulse_s": PERIOD_S / chips},
+        sensor={"taps": taps, "shortest_pulse_s": PERIOD_S / chips},
         operating={"signal_e_per_s": [signal_e_per_s], "ambient_e_per_s": [ambient_e_per_s],
                    "error": "circular"})
 
