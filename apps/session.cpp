@@ -104,6 +104,24 @@ void CameraArguments::add_temperature_to(CLI::App& command) {
       ->group(for_experts);
 }
 
+void CameraArguments::add_key_option(CLI::App& command, const std::string& key,
+                                     const std::string& name) {
+  const std::vector<KeyDescription> keys = describe_camera_keys(Camera());
+  const auto described = std::ranges::find(keys, key, &KeyDescription::name);
+  TOFSMITH_ASSERT_EQ(described != keys.end(), true);
+  const std::string_view unit = unit_of_key(key);
+  std::string help = full_help(unit, described->key.help, "", "");
+  help.front() = static_cast<char>(help.front() - 'A' + 'a');  // keys begin with a capital letter
+  const Range range = described->key.range;
+  command
+      .add_option_function<double>(
+          name,
+          [this, key](double value) { key_settings_.push_back(fmt::format("{}={}", key, value)); },
+          help)
+      ->transform(number_in(unit))
+      ->check(number_that(range.text(false), [range](double v) { return range.contains(v); }));
+}
+
 std::filesystem::path camera_beside(const std::filesystem::path& raw) {
   return std::filesystem::path(raw).replace_extension(".camera.toml");
 }
@@ -119,7 +137,9 @@ std::optional<std::string> CameraArguments::take_that_of(const std::filesystem::
 }
 
 Camera CameraArguments::load() const {
-  Camera camera = load_camera(name, settings);
+  std::vector<std::string> all_settings = settings;
+  all_settings.insert(all_settings.end(), key_settings_.begin(), key_settings_.end());
+  Camera camera = load_camera(name, all_settings);
   for (const std::string& note : unusual_numbers(camera))
     fmt::print(stderr, "tofsmith: note: {}: {}\n", printed(name), note);
   if (temperature_c) {

@@ -82,12 +82,16 @@ struct CameraArguments {
   void add_to(CLI::App& command);
   /// Adds `--temperature` and `--sensor-temperature`.
   void add_temperature_to(CLI::App& command);
+  /// Adds an option for one key, with the help, unit and range of the key.
+  /// @param key  "operating.velocity_m_per_s"
+  void add_key_option(CLI::App& command, const std::string& key, const std::string& name);
   /// Adds a positional CAMERA.
   void add_positional(CLI::App& command);
   /// @throws IoError; UsageError for a temperature if the camera lacks its keys
   Camera load() const;
 
  private:
+  std::vector<std::string> key_settings_;  // of add_key_option()
   bool stood_beside_ = false;
 };
 

@@ -3,10 +3,12 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "field_dicts.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/motion_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith::python {
@@ -45,6 +47,13 @@ void bind_simulate(py::module_& module) {
     const RobustnessOptions options = options_of<RobustnessOptions>(values);
     return robustness_dict(without_gil(callback, [&](const Progress& progress) {
       return robustness(code, camera, options, progress);
+    }));
+  });
+  module.def("motion_error", [](const CodeSet& code, const Camera& camera, double velocity_m_per_s,
+                                const py::dict& values, const py::object& callback) {
+    const EvaluateOptions options = options_of<EvaluateOptions>(values);
+    return fields_dict(without_gil(callback, [&](const Progress& progress) {
+      return motion_error(code, camera, velocity_m_per_s, options, progress);
     }));
   });
   module.def("generator_loss", [](const CodeSet& code, const Camera& camera, const py::dict& values,

@@ -78,7 +78,14 @@ from ._design import (
     find_requirements,
     suggested_exposures,
 )
-from ._evaluate import best_rotation, evaluate, generator_loss, robustness, table_depth_error_m
+from ._evaluate import (
+    best_rotation,
+    evaluate,
+    generator_loss,
+    motion_error,
+    robustness,
+    table_depth_error_m,
+)
 from ._export import ExportedCode, WaveformFormat, export_waveforms, waveform_formats
 from ._factorize import Alternation, FactorizedPair, Factorization, alternate, factorize
 from ._files import (
@@ -131,8 +138,11 @@ from ._reports import (
     DepthErrorReport,
     Estimate,
     GeneratorLoss,
+    MotionErrors,
+    MotionReport,
     RobustnessReport,
     OperatingMultipathReport,
+    WrongShares,
 )
 from ._response_calibration import (
     CalibratedResponse,
@@ -237,6 +247,8 @@ __all__ = [
     "LensBlur",
     "Light",
     "MeasurementReport",
+    "MotionErrors",
+    "MotionReport",
     "MultipathBound",
     "MultipathCells",
     "MultipathErrorReport",
@@ -276,6 +288,7 @@ __all__ = [
     "TrainingSetRun",
     "Transients",
     "Waveform",
+    "WrongShares",
     "WaveformFormat",
     "actual_waveforms",
     "alternate",
@@ -313,6 +326,7 @@ __all__ = [
     "load_code",
     "load_scene",
     "merge_exposures",
+    "motion_error",
     "multipath_error",
     "photon_transfer",
     "points_m",

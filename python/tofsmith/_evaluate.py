@@ -13,7 +13,15 @@ from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._option_fields import EvaluateOptions, RobustnessOptions
 from ._options import takes
-from ._reports import DepthErrorReport, GeneratorLoss, RobustnessReport, report_of
+from ._reports import (
+    DepthErrorReport,
+    GeneratorLoss,
+    MotionErrors,
+    MotionReport,
+    RobustnessReport,
+    WrongShares,
+    report_of,
+)
 
 
 @takes(EvaluateOptions)
@@ -152,3 +160,36 @@ def robustness(
     callback = _check.progress(progress)
     values = _tofsmith.robustness(handle, camera._handle, dict(options), callback)
     return RobustnessReport(**values)
+
+
+@takes(EvaluateOptions)
+def motion_error(
+    code: CodeLike,
+    camera: CameraLike,
+    velocity_m_per_s: float,
+    *,
+    progress: Progress = None,
+    **options: Unpack[EvaluateOptions],
+) -> MotionReport:
+    """Computes the depth error of a surface that moves along the ray while exposures follow one
+    another, and of an edge that passes between two exposures; see docs/robustness.md.
+
+    Parameters
+    ----------
+    code : CodeSet, name of a family or file
+    camera : Camera or its name
+    velocity_m_per_s : float
+        Positive: away from the camera.
+    progress : callable, optional
+    **options
+        As in EvaluateOptions; trials, seed, method and unwrap_weights are used.
+    """
+    camera = camera_of(camera)
+    handle = code_of(code, camera)._handle
+    velocity = _check.number(velocity_m_per_s, "velocity_m_per_s")
+    callback = _check.progress(progress)
+    values = _tofsmith.motion_error(handle, camera._handle, velocity, dict(options), callback)
+    for name in ("surface", "edge"):
+        shares = WrongShares(**values[name].pop("shares"))
+        values[name] = MotionErrors(shares=shares, **values[name])
+    return MotionReport(**values)

@@ -145,6 +145,85 @@ class RobustnessReport:
 
 
 @dataclass(frozen=True)
+class WrongShares:
+    """Shares of trials whose exposures saw different depths. A depth is wrong if it deviates from
+    all true depths by more than three times its `deviation_m`.
+
+    Attributes
+    ----------
+    wrong : float
+    wrong_ok, wrong_inconsistent : float
+        Wrong, with status ok or inconsistent.
+    inconsistent : float
+        Status inconsistent.
+    """
+
+    wrong: float
+    wrong_ok: float
+    wrong_inconsistent: float
+    inconsistent: float
+
+
+@dataclass(frozen=True)
+class MotionErrors:
+    """Depth errors of trials whose exposures saw different depths.
+
+    Attributes
+    ----------
+    geometric_mean_m, geometric_mean_se_m : float
+        Geometric mean over the operating points of the circular error.
+    shares : WrongShares
+        Means over the operating points.
+    signal_e_per_s, ambient_e_per_s : ndarray
+        Operating points.
+    circular_mde_m, circular_se_m : ndarray
+        Mean distance from the nearest true depth, wrapped.
+    bias_m, bias_se_m : ndarray
+        Mean difference from the nearest true depth.
+    wrong, wrong_ok, wrong_inconsistent, inconsistent : ndarray
+        As in WrongShares.
+    """
+
+    geometric_mean_m: float
+    geometric_mean_se_m: float
+    shares: WrongShares
+    signal_e_per_s: FloatArray
+    ambient_e_per_s: FloatArray
+    circular_mde_m: FloatArray
+    circular_se_m: FloatArray
+    bias_m: FloatArray
+    bias_se_m: FloatArray
+    wrong: FloatArray
+    wrong_ok: FloatArray
+    wrong_inconsistent: FloatArray
+    inconsistent: FloatArray
+
+
+@dataclass(frozen=True)
+class MotionReport:
+    """Effect of motion while the exposures of a frame follow one another.
+
+    Attributes
+    ----------
+    velocity_m_per_s : float
+    rms_bias_m, mean_bias_m : float
+        Depth error of a moving surface without noise, over all depths, to first order in the
+        velocity.
+    surface : MotionErrors
+        For a moving surface; its true depth is its depth in the middle of the frame.
+    edge : MotionErrors
+        At an edge that passes between two exposures; the true depths are the depths of both
+        surfaces. Codes with one exposure have no operating points.
+    """
+
+    velocity_m_per_s: float
+    rms_bias_m: float
+    mean_bias_m: float
+    surface: MotionErrors
+    edge: MotionErrors
+
+
+@dataclass(frozen=True)
 class OperatingMultipathReport:
     """Depth error if every pixel has a second return as in the camera's `operating.multipath`:
     geometric means over its operating points [m], each as (value, standard error).

@@ -231,7 +231,9 @@ def best_rotation(
 def robustness(
     code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /
 ) -> _Dict: ...
-
+def motion_error(
+    code: CodeSet, camera: Camera, velocity_m_per_s: float, options: _Options, progress: _Progress, /
+) -> _Dict: ...
 def generator_loss(
     code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /
 ) -> _Dict: ...

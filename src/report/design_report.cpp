@@ -319,6 +319,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   if (is_compared_with_zncc(evaluated)) page.sections.push_back(zncc_comparison(evaluated));
   if (const auto judged = judged_codes(evaluated); !judged.empty())
     page.sections.push_back(robustness_section(judged));
+  if (is_evaluated_with_motion(evaluated)) page.sections.push_back(motion_section(evaluated));
   page.sections.push_back(camera_section(camera));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;

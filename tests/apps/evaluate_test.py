@@ -94,6 +94,26 @@ class Evaluate(CommandLineTest):
         self.do(*ml, "-o", "e.html")
         self.assertIn(b"ml / zncc", self.bytes_of("e.html"))
 
+    def test_motion_is_reported_for_a_velocity(self):
+        bright = ("evaluate", "sinusoid-k4", "hamiltonian-k5", *FAST, "--set",
+                  "operating.signal_e_per_s=[1e5]", "--set", "operating.ambient_e_per_s=[1e3]")
+        still, moving = self.do_json(*bright), self.do_json(*bright, "--velocity", "-2m/s")
+        self.assertEqual(moving, self.do_json(*bright, "--set", "operating.velocity_m_per_s=-2"))
+        self.assertEqual(moving["camera"]["operating"].pop("velocity_m_per_s"), -2)
+        motions = [code.pop("motion") for code in moving["codes"]]
+        self.assertEqual(moving, still)
+        for motion in motions:
+            self.assertEqual(motion["velocity_m_per_s"], -2)
+            self.assertGreater(motion["rms_bias_m"], 0.01)
+            self.assertEqual(len(motion["edge"]["points"]), 1)
+        text = self.do(*bright, "--velocity", "-2", "-o", "e.html")
+        self.assertIn("motion at -2 m/s", text)
+        self.assertIn(f"{1e3 * motions[0]['rms_bias_m']:.1f}", text)
+        self.assertIn(b"moves along the ray at -2 m/s", self.bytes_of("e.html"))
+        self.refuse((*bright, "--velocity", "fast"), "found fast; expected a number, or one with "
+                    "its unit such as 2m/s", code=2)
+        self.refuse((*bright, "--velocity", "1e9"), "must be in [-1000, 1000]", code=2)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -160,6 +160,15 @@ def test_the_atlas_provides_codes_without_a_search():
     assert {c.method for c in alone.candidates} == {"family"}
 
 
+def test_motion_is_evaluated():
+    levels = {"signal_e_per_s": [1e5, 1e6], "ambient_e_per_s": [1e3]}
+    camera = ts.Camera("paper-10f0", operating=levels)
+    report = ts.motion_error("sinusoid-k4", camera, 1.0, trials=200)
+    assert report.velocity_m_per_s == 1.0 and report.rms_bias_m > 0
+    assert report.surface.circular_mde_m.shape == report.edge.wrong_ok.shape == (2,)
+    assert report.edge.shares.wrong == pytest.approx(report.edge.wrong.mean())
+
+
 def test_frequencies_of_a_chip_are_found():
     camera = ts.Camera("mlx75027", operating={"working_distance_m": [0.3, 6.0]})
     assert camera.square_light.frequencies_hz == (20e6, 40e6, 60e6, 80e6, 100e6)

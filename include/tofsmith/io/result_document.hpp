@@ -10,6 +10,7 @@
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/motion_error.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -22,6 +23,8 @@ struct EvaluatedCode {
   /// For DecodeMethod::ml: the error of zncc in the same trials.
   std::optional<DepthErrorReport> zncc_error;
   std::optional<RobustnessReport> robustness;
+  /// With moving surfaces, if the camera has operating.velocity_m_per_s.
+  std::optional<MotionReport> motion = {};
 };
 
 /// Returns the generator limits and errors of each waveform as a JSON list.

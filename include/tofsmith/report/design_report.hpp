@@ -60,6 +60,16 @@ std::vector<std::vector<std::string>> robustness_rows(const std::vector<JudgedCo
 /// Returns robustness_rows() as a section.
 Section robustness_section(const std::vector<JudgedCode>& codes);
 
+/// Returns true if codes were evaluated with moving surfaces.
+bool is_evaluated_with_motion(std::span<const EvaluatedCode> codes);
+
+/// Rows of the table of errors with moving surfaces, headings first: every code, as means over the
+/// light levels and optionally at each.
+std::vector<std::vector<std::string>> motion_rows(std::span<const EvaluatedCode> codes,
+                                                  bool every_level);
+/// As above as a section.
+Section motion_section(std::span<const EvaluatedCode> codes);
+
 /// Returns true if codes were also decoded by zncc.
 bool is_compared_with_zncc(std::span<const EvaluatedCode> codes);
 

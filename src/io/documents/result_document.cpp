@@ -193,6 +193,7 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
     }
     if (code.zncc_error) entry["zncc"] = zncc_json(code.error, *code.zncc_error);
     if (code.robustness) entry["robustness"] = robustness_json(*code.robustness);
+    if (code.motion) entry["motion"] = fields_json(*code.motion);
     document["codes"].push_back(std::move(entry));
   }
   return document.dump(2, ' ', false, Json::error_handler_t::replace);
