@@ -26,6 +26,14 @@ void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResu
   }
 }
 
+void add_motion(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
+                DepthErrorMeasure measure) {
+  rows.front().push_back("motion (mm)");
+  const std::vector<const Candidate*> order = by_geometric_mean_error(result, measure);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    rows[i + 1].push_back(fmt::format("{:.3f}", 1e3 * order[i]->exposure_order->rms_bias_m));
+}
+
 /// Returns sentences about the winner and its advantage over other codes.
 std::string verdict(const Camera& camera, const DesignResult& result) {
   const DepthErrorMeasure measure = camera.operating.measure();
@@ -75,6 +83,7 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
         {c->code.name(), exposures_by_taps(c->error), error_text(*c, DepthErrorKind::linear),
          error_text(*c, DepthErrorKind::circular), fmt::format("{}", c->rotation_bin), c->method});
   if (camera.operating.multipath) add_multipath(rows, result, kind);
+  if (camera.operating.velocity_m_per_s) add_motion(rows, result, camera.operating.measure());
   session.say(text_table(rows));
   session.say(depth_error_legend);
   if (kind == DepthErrorKind::linear)

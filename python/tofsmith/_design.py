@@ -51,6 +51,17 @@ class SearchRecord:
 
 
 @dataclass(frozen=True)
+class ExposureOrder:
+    """Order of exposures that a design chose for moving surfaces. `order` lists the number in the
+    proposed code of each exposure; `rms_bias_m` is the rms depth error due to motion in this order,
+    and `given_rms_bias_m` that in the order of the proposed code."""
+
+    order: list[int]
+    rms_bias_m: float
+    given_rms_bias_m: float
+
+
+@dataclass(frozen=True)
 class Candidate:
     """A candidate code for the camera.
 
@@ -78,6 +89,8 @@ class Candidate:
     robustness : RobustnessReport, optional
     multipath : OperatingMultipathReport, optional
         For cameras with `operating.multipath`.
+    exposure_order : ExposureOrder, optional
+        For cameras with `operating.velocity_m_per_s`.
     """
 
     code: CodeSet
@@ -93,6 +106,7 @@ class Candidate:
     message: str
     robustness: Optional[RobustnessReport]
     multipath: Optional[OperatingMultipathReport]
+    exposure_order: Optional[ExposureOrder]
 
     @property
     def is_designed(self) -> bool:
@@ -183,6 +197,8 @@ def _candidate(values: dict[str, Any], camera: Camera) -> Candidate:
         values["robustness"] = RobustnessReport(**values["robustness"])
     if values["multipath"] is not None:
         values["multipath"] = OperatingMultipathReport(**values["multipath"])
+    if values["exposure_order"] is not None:
+        values["exposure_order"] = ExposureOrder(**values["exposure_order"])
     return Candidate(**values)
 
 

@@ -155,6 +155,17 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
   return text + ". The best code has too few independent means for two-return decoding.";
 }
 
+std::string behind_motion(double velocity_m_per_s, const ExposureOrder& chosen) {
+  const auto rms_mm = [](double error_m) { return fmt::format("{:.3f} mm", 1e3 * error_m); };
+  const std::string text =
+      fmt::format("At {} m/s along the ray, motion between its exposures causes an rms error of {}",
+                  velocity_m_per_s, rms_mm(chosen.rms_bias_m));
+  if (std::is_sorted(chosen.order.begin(), chosen.order.end()))
+    return text + "; no other order of the exposures was better.";
+  return text + fmt::format("; its exposures were reordered to {}, from {}.",
+                            fmt::join(chosen.order, ", "), rms_mm(chosen.given_rms_bias_m));
+}
+
 }  // namespace
 
 std::vector<std::string> explain(const Camera& camera, const DesignResult& result,
@@ -167,6 +178,8 @@ std::vector<std::string> explain(const Camera& camera, const DesignResult& resul
   if (camera.operating.multipath)
     sentences.push_back(
         behind_multipath(*camera.operating.multipath, result, camera.operating.error));
+  if (const auto& chosen = result.winner().exposure_order)
+    sentences.push_back(behind_motion(*camera.operating.velocity_m_per_s, *chosen));
   return sentences;
 }
 

@@ -11,6 +11,7 @@
 #include "camera/shared/depth_prior.hpp"
 #include "design/baselines.hpp"
 #include "design/explanation.hpp"
+#include "design/exposure_order.hpp"
 #include "design/optimize/two_return_limit.hpp"
 #include "simulate/shared/camera_bounds.hpp"
 #include "tofsmith/core/error.hpp"
@@ -79,6 +80,7 @@ void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& op
 
 void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                CameraBounds& bounds, const Progress& progress) {
+  choose_exposure_order(camera, candidate);
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed;

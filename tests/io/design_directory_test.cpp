@@ -135,6 +135,23 @@ TEST(DesignDirectory, KeepsMultipathErrors) {
   }
 }
 
+TEST(DesignDirectory, KeepsTheOrderOfExposures) {
+  Camera moving = small_camera("paper-10f0");
+  moving.operating.velocity_m_per_s = 1.0;
+  const DesignOptions options = small_options();
+  const DesignResult result =
+      judge(moving, {{.code = build_family("sinusoid-k4", moving), .method = "family"}}, options);
+  const TemporaryDirectory place;
+  const DesignDirectory directory(place / "d");
+  directory.write(moving, result, options, OutputPolicy::refuse_existing);
+  const auto read = directory.read().result.winner().exposure_order;
+  const auto& written = result.winner().exposure_order;
+  ASSERT_TRUE(read && written);
+  EXPECT_EQ(read->order, written->order);
+  EXPECT_EQ(read->rms_bias_m, written->rms_bias_m);
+  EXPECT_EQ(read->given_rms_bias_m, written->given_rms_bias_m);
+}
+
 TEST(DesignDirectory, ExistingFilesAreReplacedOnRequestOnly) {
   const TemporaryDirectory place;
   const DesignDirectory directory(place.path());

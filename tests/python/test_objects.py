@@ -160,13 +160,17 @@ def test_the_atlas_provides_codes_without_a_search():
     assert {c.method for c in alone.candidates} == {"family"}
 
 
-def test_motion_is_evaluated():
+def test_motion_is_evaluated_and_lowered_by_the_order_of_exposures():
     levels = {"signal_e_per_s": [1e5, 1e6], "ambient_e_per_s": [1e3]}
     camera = ts.Camera("paper-10f0", operating=levels)
     report = ts.motion_error("sinusoid-k4", camera, 1.0, trials=200)
     assert report.velocity_m_per_s == 1.0 and report.rms_bias_m > 0
     assert report.surface.circular_mde_m.shape == report.edge.wrong_ok.shape == (2,)
     assert report.edge.shares.wrong == pytest.approx(report.edge.wrong.mean())
+    moving = ts.Camera("paper-10f0", operating=levels | {"velocity_m_per_s": 1.0})
+    chosen = ts.design(moving, effort=0, trials=1000, atlas_cameras=0).winner.exposure_order
+    assert sorted(chosen.order) == list(range(len(chosen.order)))
+    assert chosen.rms_bias_m <= chosen.given_rms_bias_m
 
 
 def test_frequencies_of_a_chip_are_found():

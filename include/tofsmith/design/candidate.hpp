@@ -56,8 +56,21 @@ auto fields_of(ConstOrNot<SearchRecord> auto& s) {
                     Field("account", s.account));
 }
 
+/// Order of exposures that a design chose for moving surfaces.
+struct ExposureOrder {
+  std::vector<int> order;         ///< number in the proposed code of each exposure, from 0
+  double rms_bias_m = 0.0;        ///< MotionBias::rms_m() in this order
+  double given_rms_bias_m = 0.0;  ///< in the order of the proposed code
+};
+/// Describes the fields (core/fields.hpp).
+auto fields_of(ConstOrNot<ExposureOrder> auto& o) {
+  return std::tuple(Field("order", o.order, at_least(0)),
+                    Field("rms_bias_m", o.rms_bias_m, at_least(0)),
+                    Field("given_rms_bias_m", o.given_rms_bias_m, at_least(0)));
+}
+
 /// A code that competes for a camera. Methods set the code and its origin; judge()
-/// (design/design.hpp) sets rotation, errors and robustness.
+/// (design/design.hpp) sets exposure order, rotation, errors and robustness.
 struct Candidate {
   CodeSet code;
   /// "family", "naive", "reference", "atlas", "factorize", "optimize", "search" or "frequencies".
@@ -75,6 +88,9 @@ struct Candidate {
 
   /// Error in operating.multipath.
   std::optional<OperatingMultipathReport> multipath;
+
+  /// Order of the exposures of `code`, if the camera has operating.velocity_m_per_s.
+  std::optional<ExposureOrder> exposure_order = {};
 
   /// Returns true if the code was designed for this camera.
   bool is_designed() const { return !per_measurement.empty(); }

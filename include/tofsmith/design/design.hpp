@@ -157,7 +157,8 @@ std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method);
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options);
 
 /// Ranks candidates by ranking_error_m() with new random numbers, at their best origins if
-/// requested. Lists candidates without decodable depth in DesignResult::left_out.
+/// requested. With operating.velocity_m_per_s, the exposures are first put into the order with the
+/// smallest MotionBias. Lists candidates without decodable depth in DesignResult::left_out.
 /// @param candidates  codes that the camera supports
 /// @return the best candidate of each name. The winner is never worse than any given candidate with
 ///   one of the numbers in DesignOptions::exposures, or than any candidate if none has such a

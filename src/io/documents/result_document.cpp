@@ -160,6 +160,7 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
     }
     if (candidate.robustness) entry["robustness"] = robustness_json(*candidate.robustness);
     if (candidate.multipath) entry["multipath"] = fields_json(*candidate.multipath);
+    if (candidate.exposure_order) entry["exposure_order"] = fields_json(*candidate.exposure_order);
     const Estimate gain = gain_over(result, candidate, camera.operating.measure());
     entry["times_best"] = {{"ratio", gain.value}, {"ratio_se", gain.standard_error}};
     document["codes"].push_back(std::move(entry));
