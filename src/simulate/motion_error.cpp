@@ -277,7 +277,7 @@ MotionReport motion_error(const CodeSet& code, const Camera& on, double velocity
   const Camera camera = judged_camera(on);
   const MotionTrials trials(code, camera, options);
   const ProgressParts parts(progress, 2);
-  // Not the judged camera: its exposures are longer, because it adds neighbours.
+  // The exposures of the judged camera are longer, because it adds neighbours.
   const Eigen::VectorXd shift_m = exposure_shifts_m(code, on, velocity_m_per_s);
   const MotionBias bias(trials.model(), camera);
   MotionReport result{.velocity_m_per_s = velocity_m_per_s,
