@@ -61,7 +61,7 @@ DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camer
     return read_delay_sweep(arguments.file(), options);
   } catch (const IoError& error) {
     const std::filesystem::path path = arguments.file();
-    if (!arguments.shifts.empty() || path.extension() != ".npy") throw;
+    if (!arguments.shifts.empty() || path.extension() != ".npy" || !exists(path)) throw;
     throw std::runtime_error(fmt::format(
         "{}; frames at several delays require --shifts, frames of known depth --reference",
         error.what()));

@@ -132,7 +132,7 @@ std::string remarks(const CLI::Option& option, const std::string& rule) {
   if (!rule.empty()) all.push_back(rule);
   if (option.get_required()) all.emplace_back("required");
   if (!option.get_default_str().empty() && option.get_type_size() != 0)
-    all.push_back("default " + option.get_default_str());
+    all.push_back("default: " + option.get_default_str());
   if (option.get_expected_max() >= CLI::detail::expected_max_vector_size &&
       !option.get_positional() && option.get_description().find("repeatable") == std::string::npos)
     all.emplace_back("repeatable");

@@ -52,8 +52,8 @@ CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
 
 namespace {
 
-/// Returns pulses at `frequency` in the first half of the period, or one pulse if the peak factor
-/// requires light for the whole half or longer.
+/// Returns pulses at `frequency` in about the first half of the period, or one pulse if the peak
+/// factor requires light for the whole half or longer.
 Waveform burst(int frequency, double peak_factor) {
   const int pulses = (frequency + 1) / 2;
   const double share = static_cast<double>(pulses) / frequency;  // of the period

@@ -18,8 +18,8 @@ CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
                                     const FamilyOptions& options);
 
 /// One light for all five exposures: a burst of pulses at `high_frequency` (>= 2) times the
-/// fundamental in the first half of the period. Demodulation: square waves, three steps at the
-/// fundamental and a quadrature pair at the high frequency.
+/// fundamental in about the first half of the period. Demodulation: square waves, three steps at
+/// the fundamental and a quadrature pair at the high frequency.
 /// @see Bao et al., "Learnable Burst-Encodable Time-of-Flight Imaging for High-Fidelity
 ///   Long-Distance Depth Sensing", arXiv 2505.22025 (2025), whose bursts are learned
 CodeSet burst_code(int high_frequency, const FamilyOptions& options);

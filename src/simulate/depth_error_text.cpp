@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tofsmith {
 
 std::string exposures_by_taps(const DepthErrorReport& error) {
-  return fmt::format("{} x {}", error.exposures, error.taps);
+  const int per_exposure = error.measurements / std::max(1, error.exposures);
+  return fmt::format("{} x {}", error.exposures, per_exposure);
 }
 
 }  // namespace tofsmith

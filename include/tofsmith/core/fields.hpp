@@ -118,8 +118,8 @@ struct Field {
     (set(its_marks), ...);
   }
   bool is(FieldMark mark) const { return (marks & as_bits(mark)) != 0; }
-  /// With unit, condition and default: "longest delay of a second return [m] (a third of the
-  /// range)".
+  /// With unit, condition and default: "longest delay of a second return [m] (default: a
+  /// third of the range)".
   std::string help_text() const { return full_help(unit(), help, only_with, if_absent); }
   /// "" for plain numbers.
   std::string_view unit() const;

@@ -16,7 +16,8 @@ inline constexpr const char* depth_error_legend =
     "tap: value read out of an exposure; linear: error of the depth; circular: error modulo the "
     "unambiguous range; S, A: signal and ambient light";
 
-/// Returns the number of exposures and of taps of the code, such as "3 x 2".
+/// Returns the number of exposures and of values per exposure, such as "3 x 2"; "3 x 1" if the
+/// sensor delivers the difference of two taps.
 std::string exposures_by_taps(const DepthErrorReport& error);
 
 }  // namespace tofsmith

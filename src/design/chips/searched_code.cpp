@@ -17,7 +17,7 @@ SearchRecord record_of(const ChipSearchResult& found) {
   const ChipSearchCounts& c = found.log.counts;
   SearchRecord record{
       .work_unit = "% of the search",
-      .error_name = "smallest rms error found, by the minimized variance",
+      .error_name = "smallest rms error found: root of the minimized variance",
       .proved = found.proved,
       .account = fmt::format(
           "{} Of {:.4g} codes, {:.4g} after symmetry, {} were examined (a few symmetric ones "
