@@ -91,7 +91,7 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"description (.raw.toml) of a raw file without header; see docs/raw_formats.md"}),
       Field("output", r.output, FieldMark::from_above),
       Field("outputs", r.outputs, Help{help_of_outputs()},
-            IfAbsent{"those planes from depth to status that the format supports"}),
+            IfAbsent{"the planes from depth to status that the format supports"}),
       Field("kind", r.kind,
             Help{"depth to write: radial distance, or z along the optical axis; .ply and .pcd "
                  "contain points"}),
