@@ -122,7 +122,8 @@ std::string value_problem(const CLI::App& app, const std::string& text) {
   if (text.starts_with(prefix)) {
     const std::size_t end = text.find(sign);
     const std::string option = text.substr(prefix.size(), end - prefix.size());
-    const CLI::Option* const found = chosen(app).get_option_no_throw(option);
+    const CLI::Option* found = chosen(app).get_option_no_throw(option);
+    if (found == nullptr) found = app.get_option_no_throw(option);
     const bool is_whole =
         found != nullptr && found->get_type_name().find("INT") != std::string::npos;
     return fmt::format("{}: found {}; expected {}", option, text.substr(end + sign.size()),
@@ -130,10 +131,12 @@ std::string value_problem(const CLI::App& app, const std::string& text) {
   }
   const std::string option = text.substr(0, text.find(':'));
   if (text.ends_with(" missing")) return fmt::format("{}: found no value; expected one", option);
-  constexpr std::string_view most = "At Most 1 required but received ";
-  if (const std::size_t at = text.find(most); at != std::string::npos)
-    return fmt::format("{}: found {} values; expected one", option, text.substr(at + most.size()));
-  return text;
+  constexpr std::string_view received = " required but received ";  // "At least 2" precedes it
+  const std::size_t at = text.find(received);
+  if (at == std::string::npos) return text;
+  const std::size_t number = text.rfind(' ', at - 1) + 1;
+  return fmt::format("{}: found {} value(s); expected {}", option,
+                     text.substr(at + received.size()), text.substr(number, at - number));
 }
 
 /// Returns a one-sentence description of the error in the arguments.

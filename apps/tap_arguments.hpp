@@ -59,9 +59,9 @@ struct TapArguments {
     });
     if ((taps || !order.empty()) && !reads_columns)
       throw UsageError(fmt::format(
-          "{}: found the code {}; expected an array (.npz); the number of taps of the camera is "
-          "--set sensor.taps={}",
-          taps ? "--taps" : "--tap-order", fmt::join(codes, ", "), taps.value_or(2)));
+          "{}: found the code {}; expected an array (.npz){}", taps ? "--taps" : "--tap-order",
+          fmt::join(codes, ", "),
+          taps ? fmt::format("; --set sensor.taps={} sets the taps of the camera", *taps) : ""));
     return file_options();
   }
 };

@@ -241,7 +241,7 @@ evaluate sinusoid-k4 --set light.peak_factor=high | found "high"; expected a num
 evaluate sinusoid-k4 --set sensor.taps=9 | multiple of the 9 taps
 evaluate sinusoid-k4 --taps 3 | --taps; --set sensor.taps=3
 evaluate sinusoid-k4 --camera | --camera: found no value
-evaluate sinusoid-k4 --camera good.toml --camera lens.toml | --camera: found 2 values
+evaluate sinusoid-k4 --camera good.toml --camera lens.toml | --camera: found 2 value(s); expected 1
 evaluate sinusoid-k4 --seed -3 | --seed: found -3; >= 0
 evaluate sinusoid-k4 --seed today | --seed; today
 evaluate sinusoid-k4 --threads many | --threads; found many
@@ -259,6 +259,9 @@ require good.toml --error 5mm | light.impulse_response = { kind = "lowpass"
 require indoor --error 5mm --vary bandwith | did you mean bandwidth?
 export sinusoid-k4 --format csv --rate 660 -o w | sample_rate_hz = 660; check the unit
 export sinusoid-k4 --format csv --bits 12.5 -o w | --bits: found 12.5; expected an integer
+export sinusoid-k4 --format csv --volts 5 -o w | --volts: found 1 value(s); expected 2
+evaluate sinusoid-k4 --threads 1.5 | --threads: found 1.5; expected an integer
+evaluate sinusoid-k4 --tap-order blocked | --tap-order; sinusoid-k4; array
 export sinusoid-k4 --format csv -o w.docx | w.docx; expected .csv
 simulate table-top --code sinusoid-k4 --truth t.txt -o r.npy | t.txt; expected one of .npy
 simulate table-top --code sinusoid-k4 --frames 2.5 -o r.npy | --frames: found 2.5
