@@ -162,7 +162,9 @@ void DeviceFrame::add_similar(int from, int to, int window) const {
       .by = scale.by,
       .expected = scale.expected,
       .noise_limit = scale.noise_limit,
-      .floor_share = window == 0 ? 0.0f : static_cast<float>(1.0 / plan_.options.trusted_pixels)};
+      .floor_share = window == 0 ? 0.0f : static_cast<float>(1.0 / plan_.options.trusted_pixels),
+      .bias_share = plan_.bias_of(window).share,
+      .bias_by_noise = plan_.bias_of(window).by_noise};
   run(find_energy_, parameters_, w, &planes_);
   run(weigh_similar_, parameters_, w, &planes_, &weights_);
   run(add_similar_, parameters_, w, &planes_, &weights_);

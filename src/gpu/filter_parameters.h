@@ -35,6 +35,7 @@ struct SimilarParameters {
   int step, patch_reach;
   float by, expected, noise_limit;  ///< see PatchScale
   float floor_share;
+  float bias_share, bias_by_noise;  ///< see BiasBound
 };
 
 /// One window of a round along slopes.

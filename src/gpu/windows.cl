@@ -185,19 +185,42 @@ kernel __attribute__((reqd_work_group_size(tile_columns, tile_rows, 1))) void we
   }
 }
 
+/// Returns the number of rows or columns of a window around `at` that are inside the frame.
+int places_inside(int at, int size, int step) {
+  int places = 1;
+  for (int i = 1; i <= WINDOW_REACH; ++i)
+    places += (at >= i * step ? 1 : 0) + (at < size - i * step ? 1 : 0);
+  return places;
+}
+
+/// Returns the variance of a window with the bound on the squared bias, as add_bias().
+/// @param sum  of the weights of the neighbours
+float variance_with_bias(const struct FilterParameters* p, const struct SimilarParameters* w, int x,
+                         int y, float sum, float before, float variance) {
+  const int places =
+      places_inside(y, p->height, w->step) * places_inside(x, p->width, w->step);
+  const float others = (float)(places > 1 ? places - 1 : 1);
+  const float any_rejected = (1.0f - w->bias_by_noise) - sum / others;
+  const float rejected = LARGER(any_rejected, 0.0f);
+  const float any_removed = before - variance, removed = LARGER(any_removed, 0.0f);
+  return w->bias_share > 0.0f ? product_plus(rejected * w->bias_share, removed, variance)
+                              : variance;
+}
+
 kernel void add_similar(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int at = y * p.stride + x;
   const Plane variances = plane_of(&p, planes, w.variance_in);
-  float sum[MEASUREMENTS], weight = 1.0f, variance = variances[at];
+  float sum[MEASUREMENTS], weight = 1.0f, others = 0.0f, variance = variances[at];
   for (int k = 0; k < MEASUREMENTS; ++k) sum[k] = plane_of(&p, planes, w.light + k)[at];
   for (int i = 0; i < HALF_WINDOW; ++i) {
     const int away = half_window_rows[i] * w.step * p.stride + half_window_columns[i] * w.step;
     const Plane own = plane_of(&p, weights, i);
     const float ahead = own[at], behind = own[at - away];
     weight += ahead + behind;
+    others += ahead + behind;
     variance = product_plus(ahead * ahead, variances[at + away], variance);
     variance = product_plus(behind * behind, variances[at - away], variance);
     for (int k = 0; k < MEASUREMENTS; ++k) {
@@ -207,7 +230,8 @@ kernel void add_similar(const struct FilterParameters p, const struct SimilarPar
     }
   }
   const float inverse = 1.0f / weight;
-  plane_of(&p, planes, w.variance_out)[at] = variance * (inverse * inverse);
+  plane_of(&p, planes, w.variance_out)[at] =
+      variance_with_bias(&p, &w, x, y, others, variances[at], variance * (inverse * inverse));
   for (int k = 0; k < MEASUREMENTS; ++k) plane_of(&p, planes, w.to + k)[at] = sum[k] * inverse;
 }
 

@@ -101,6 +101,15 @@ TEST_P(FilterDeviation, EqualsTheSpreadOfRepeatedCapturesForAnyAlbedo) {
   EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.07);
 }
 
+// Noise changes the weights of pixels whose depth differs.
+TEST(FilterDeviationOfLight, IncludesTheNoiseOfWeightsOnASteepPlane) {
+  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
+  const Repeats repeats(setup, FilterStrength::light, [](int row, int column) {
+    return Seen{60.0 + 0.2 * column + 0.08 * row, 1e5};
+  });
+  EXPECT_NEAR(repeats.ratio(is_inner), 1.0, 0.15);
+}
+
 TEST_P(FilterDeviation, IsAtMostAThirdTooSmallNearAnEdge) {
   const Repeats repeats(setup, GetParam(), [](int, int column) {
     return Seen{column < 48 ? 60.0 : 75.0, 2e4};

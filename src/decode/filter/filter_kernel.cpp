@@ -136,6 +136,41 @@ HWY_INLINE void add_variances(const WeightedSums& sums, const RowPairs& pairs, i
   }
 }
 
+/// Returns the number of rows or columns of a window around `at` that are inside the frame.
+HWY_INLINE Vector places_inside(Vector at, int size, int step) {
+  const Vector one = all(1.0f);
+  Vector places = one;
+  for (int i = 1; i <= window_reach; ++i) {
+    const auto first = static_cast<float>(i * step), end = static_cast<float>(size) - first;
+    places = hn::Add(places, hn::IfThenElseZero(hn::Ge(at, all(first)), one));
+    places = hn::Add(places, hn::IfThenElseZero(hn::Lt(at, all(end)), one));
+  }
+  return places;
+}
+
+/// Adds the bound on the squared bias to the variances of a row. Pixels without a usable
+/// measurement count as rejected, pixels outside of the frame do not.
+HWY_INLINE void add_bias(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
+                         const RowPairs& pairs, int y) {
+  const std::ptrdiff_t row = y * grid.stride;
+  const Vector zero = hn::Zero(Floats()), one = all(1.0f);
+  const Vector share = all(sums.bias.share), most = all(1.0f - sums.bias.by_noise);
+  const Vector rows = places_inside(all(static_cast<float>(y)), grid.height, strip.step);
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    Vector sum = zero;
+    for (std::size_t i = 0; i < half_window.size(); ++i)
+      sum =
+          hn::Add(sum, hn::Add(load(pairs.ahead.data()[i] + x), load(pairs.behind.data()[i] + x)));
+    const Vector columns =
+        places_inside(hn::Iota(Floats(), static_cast<float>(x)), grid.width, strip.step);
+    const Vector others = hn::Max(hn::MulSub(rows, columns, one), one);
+    const Vector rejected = hn::Max(hn::Sub(most, hn::Div(sum, others)), zero);
+    float* const variance = sums.variance_out + row + x;
+    const Vector removed = hn::Max(hn::Sub(load(sums.variance + row + x), load(variance)), zero);
+    store(hn::MulAdd(hn::Mul(rejected, share), removed, load(variance)), variance);
+  }
+}
+
 /// Computes the mean of a plane multiplied by its depth beyond the slope, which has the opposite
 /// sign for neighbours behind.
 HWY_INLINE void add_shifted(const WeightedSums& sums, const RowPairs& pairs, int width,
@@ -175,6 +210,7 @@ void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const Filter
     shifted = own_pairs(shifted, balanced.own_shifted, balanced.stride);
   }
   add_variances(sums, pairs, grid.width, row, inverse_sum);
+  if (sums.bias.share > 0.0f) add_bias(sums, grid, strip, pairs, strip.first_row + r);
   int k = 0;
   for (; k + 5 <= sums.planes; k += 5) add_planes<5>(sums, k, pairs, grid.width, row, inverse_sum);
   for (; k + 4 <= sums.planes; k += 4) add_planes<4>(sums, k, pairs, grid.width, row, inverse_sum);

@@ -130,12 +130,24 @@ struct LightBalance {
   int step = 0;  ///< of the window [pixels]
 };
 
+/// Bound on the bias of a window of similar pixels. The neighbours that the window rejects have
+/// another depth, and the test of pairs cannot distinguish all such pixels from noise. The squared
+/// bias is at most share (rejected - by_noise) (v - v'), with the rejected share of the neighbours
+/// and the variances v before and v' after the window. The constants are measured
+/// (benchmarks/scene_deviations.py).
+struct BiasBound {
+  float share = 0.0f;
+  float by_noise = 0.0f;  ///< share of the neighbours that noise rejects on flat surfaces
+};
+inline constexpr BiasBound similar_bias{0.1f, 0.4f};
+
 struct WeightedSums {
   std::array<const float*, max_measurements + 1> in{};
   std::array<float*, max_measurements + 1> out{};
   int planes = 0;
   const float* variance = nullptr;
   float* variance_out = nullptr;
+  BiasBound bias;                     ///< added to variance_out
   const float* shifted_in = nullptr;  ///< may be null
   float* shifted_out = nullptr;
   const LightBalance* balance = nullptr;  ///< for shifted_in; null: no balancing

@@ -234,7 +234,8 @@ void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window
                 row, 1, frame.scalar(FilterPlanes::energy),
                 frame.scalar(FilterPlanes::inverse_sigma));
   });
-  const WeightedSums sums = sums_of(frame, from, to, window);
+  WeightedSums sums = sums_of(frame, from, to, window);
+  sums.bias = bias_of(window);
   for_each_strip(frame, window_step(window), false,
                  [&](const FilterStrip& strip, const PairWeights& weights) {
                    weigh_similar(test, frame.grid, strip, weights);

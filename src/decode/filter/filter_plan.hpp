@@ -43,6 +43,12 @@ struct Filter::Plan {
   int samples() const { return decoder.table().samples(); }
   FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
 
+  /// Bias that the variance of a window of similar pixels includes: that of the result. Passes
+  /// along slopes include none, since it would hide mixed pixels from mark_mixed_pixels().
+  BiasBound bias_of(int window) const {
+    return window + 1 == options.windows && options.slope_rounds == 0 ? similar_bias : BiasBound{};
+  }
+
   NoiseRatios noise_ratios() const;
 
   /// Reads the first set of light, with variances and usable flags.
