@@ -112,8 +112,8 @@ def main():
         print("spread, bias, other | " + " | ".join(classes))
         for signal in arguments.signals or (1e3, 3e3, 1e4, 1e5):
             run(arguments.program, "simulate", scene, "--kind", "radial", "--no-falloff",
-                "--image", image, "--code", arguments.code, "--signal", signal, "--ambient",
-                AMBIENT_E_PER_S, "--frames", arguments.frames, "-o", raw)
+                "--camera", "paper-10f0", "--image", image, "--code", arguments.code, "--signal",
+                signal, "--ambient", AMBIENT_E_PER_S, "--frames", arguments.frames, "-o", raw)
             for strength in FILTERS:
                 options = ("--filter", strength) if strength != "off" else ()
                 captures = decoded(arguments.program, raw, arguments.code, options)
