@@ -77,8 +77,8 @@ class FilteredFrame {
   /// filtered into again.
   RawView view() const;
   RawFrames values() const;
-  /// (H, W): effective number of averaged measurements; 1 for unfiltered pixels. Without slope rounds,
-  /// the variance includes a bound on the squared bias.
+  /// (H, W): effective number of averaged measurements; 1 for unfiltered pixels. Without slope
+  /// rounds, the variance includes a bound on the squared bias.
   const Image<float>& averaged() const;
 
  private:
