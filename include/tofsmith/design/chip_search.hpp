@@ -109,8 +109,8 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
             Help{"distance from which on depths must keep the margin"}),
       Field("equal_duty", o.equal_duty, Help{"open all taps of an exposure equally long"}),
       Field("metric", o.metric,
-            Help{"variance to minimize: of depth alone (known-light), as in CVPR 2026, or of depth "
-                 "with unknown signal and ambient light"}),
+            Help{"minimized variance of the depth: with unknown signal and ambient light "
+                 "(unknown-light), or with known signal and ambient light (known-light)"}),
       Field("max_exhaustive", o.max_exhaustive, at_least(0).or_infinity(),
             Help{"maximum size of an exhaustive search, up to symmetry; larger ones use annealing, "
                  "without proof"}),

@@ -79,8 +79,8 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
                  "on a clock grid; atlas: only rank atlas codes and standard codes; "
                  "frequencies: square waves at frequencies that the camera supports"}),
       Field("exposures", o.exposures, closed(1, 16),
-            Help{"numbers of exposures to try, such as 3,4,5; for cameras that read out rows, "
-                 "numbers of rows"},
+            Help{"numbers of exposures to try, such as 3,4,5; numbers of rows if the camera has "
+                 "sensor.readout = rows"},
             IfAbsent{"suitable numbers for the camera"}),
       Field("target", o.target, FieldMark::apart),
       Field("factorize", o.factorize, Help{"options of factorization"}),
@@ -93,8 +93,8 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
             Help{"standard codes to compare with; unsupported ones are skipped"},
             IfAbsent{"suitable codes for the method"}),
       Field("atlas_cameras", o.atlas_cameras, closed(0, 1000),
-            Help{"number of the most similar cameras of the atlas; their codes are ranked as "
-                 "well, and searches start from them; 0: none"}),
+            Help{"number of atlas cameras whose codes are ranked as well and are starting points "
+                 "of searches; the most similar cameras are used; 0: none"}),
       Field("best_rotation", o.best_rotation,
             Help{"choose the best origin of depth for every candidate"}),
       Field("split_exposures", o.split_exposures,
@@ -276,12 +276,14 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
       Field("max_factor", o.max_factor, left_open(1, 1e6),
             Help{"largest factor by which a quantity is increased or decreased"}),
       Field("exact", o.exact,
-            Help{"design a code for each amount (minutes) instead of using atlas codes "
-                 "(seconds); smaller amounts can then suffice"}),
+            Help{"design a code for each tried bandwidth, power or exposure (minutes) instead of "
+                 "using atlas codes (seconds); the required value can be smaller with designed "
+                 "codes"}),
       Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"},
             OnlyWith{"exact"}),
       Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),
-      Field("map", o.map, Help{"compute the error over bandwidth and power, if both are varied"}),
+      Field("map", o.map,
+            Help{"compute a map of the error over bandwidth and power, if both are varied"}),
       Field("seed", o.seed, Help{"seed of every random choice"}));
 }
 

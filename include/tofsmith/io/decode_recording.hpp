@@ -83,7 +83,7 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
       Field("raw", r.raw, FieldMark::from_above),
       Field("layout", r.layout,
             Help{"memory layout of the raw numbers: interleaved (H,W,K) or planar (K,H,W); not "
-                 "detected"}),
+                 "detected automatically"}),
       Field("dataset", r.dataset,
             Help{"array of an .npz file or dataset of an .h5 file with the raw numbers"},
             IfAbsent{"raw, otherwise the only one"}),
@@ -91,7 +91,8 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"description (.raw.toml) of a raw file without header; see docs/raw_formats.md"}),
       Field("output", r.output, FieldMark::from_above),
       Field("outputs", r.outputs, Help{help_of_outputs()},
-            IfAbsent{"the planes from depth to status that the format supports"}),
+            IfAbsent{"depth, signal, ambient, confidence, deviation and status, if the format "
+                     "supports them"}),
       Field("kind", r.kind,
             Help{"depth to write: radial distance, or z along the optical axis; .ply and .pcd "
                  "contain points"}),
@@ -115,8 +116,8 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
             Help{"average this many consecutive frames before decoding; the last group may be "
                  "smaller"}),
       Field("hdr", r.hdr,
-            Help{"merge groups of frames with these exposures, as multiples of the camera's, e.g. "
-                 "1,4,16; the shortest is 1"}),
+            Help{"merge groups of frames with different exposures: multiples of the camera's "
+                 "exposure, e.g. 1,4,16; the shortest is 1"}),
       Field("sliding", r.sliding,
             Help{"decode a sliding window of exposures instead of frames: one depth image per "
                  "exposure"}),
@@ -146,8 +147,8 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
           Help{
               "relative response of each pixel, removed from signal and ambient; NaN: dead pixel"}),
       Field("memory_mb", r.memory_mb, left_open(0, 1e9),
-            Help{"memory for frames in flight, in addition to about 50 MB; frames that do not "
-                 "fit are decoded in bands"}),
+            Help{"memory for in-flight frames; the process uses about 50 MB more; frames that do "
+                 "not fit are decoded in bands of rows"}),
       Field("order", r.order, FieldMark::from_above),
       Field("policy", r.policy, FieldMark::from_above),
       Field("other_inputs", r.other_inputs, FieldMark::from_above));

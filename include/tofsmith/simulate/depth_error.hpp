@@ -57,12 +57,13 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
       Field("seed", o.seed, Help{"seed of all trials"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
             outlier_threshold_help),
-      Field("sub_bin", o.sub_bin, Help{"decode between bins"}),
+      Field("sub_bin", o.sub_bin, Help{"interpolate decoded depths between bins"}),
       Field("depth", o.depth,
             Help{"true depths: uniform in the range, or on bins only (underestimates errors)"}),
       Field("clip_to_open_sensor", o.clip_to_open_sensor,
-            Help{"clip the electrons of exposure T, signal S and ambient light A to [0, T (S + "
-                 "A)], as in the simulator of Gutierrez-Barragan et al., CVPR 2019"}),
+            Help{"clip each measurement to [0, T (S + A)] electrons, where T is the exposure, S "
+                 "the signal and A the ambient light, as in the simulator of Gutierrez-Barragan et "
+                 "al., CVPR 2019"}),
       Field("method", o.method, decode_method_help),
       Field("unwrap_weights", o.unwrap_weights, unwrap_weights_help, unwrap_weights_condition),
       Field("target_standard_error", o.target_standard_error, right_open(0, 1),

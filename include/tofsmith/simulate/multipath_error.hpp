@@ -73,10 +73,11 @@ auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
   return std::tuple(
       Field("delay_m", o.delay_m, above(0), Help{"delays of the second return"}),
       Field("ratio", o.ratio, closed(0, 1), Help{"ratios of the second return to the direct one"}),
-      Field("tail_m", o.tail_m, above(0), Help{"mean delays of tails"}),
+      Field("tail_m", o.tail_m, above(0), Help{"mean delays of exponential tails"}),
       Field("signal_e_per_s", o.signal_e_per_s, above(0), Help{"light of the direct return"}),
       Field("ambient_e_per_s", o.ambient_e_per_s, at_least(0), Help{"ambient light"}),
-      Field("trials", o.trials, closed(2, 1e7), Help{"trials per cell of a map"}),
+      Field("trials", o.trials, closed(2, 1e7),
+            Help{"trials per combination of signal, delay and ratio"}),
       Field("seed", o.seed, Help{"seed of all trials"}),
       Field("decoding", o.decoding, Help{"options of two-return and tail decoding"}));
 }

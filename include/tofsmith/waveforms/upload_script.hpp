@@ -51,8 +51,9 @@ auto fields_of(ConstOrNot<UploadRequest> auto& r) {
       Field("load_ohm", r.load_ohm,
             Help{"load that the voltages refer to: 1 to 1e6, or inf for an open circuit"}),
       Field("output_on", r.output_on, Help{"switch the outputs on after verification"}),
-      Field("read_back", r.read_back,
-            Help{"verify the points by reading them back; some models do not support this"}),
+      Field(
+          "read_back", r.read_back,
+          Help{"verify the points by reading them back; some models do not support reading back"}),
       Field("reset", r.reset,
             Help{"reset the instrument first; without a reset, earlier settings could change the "
                  "output"}),
@@ -132,9 +133,11 @@ auto fields_of(ConstOrNot<UploadSelection> auto& s) {
       Field("light_channel", s.light_channel, closed(0, 8), Help{"channel for the light; 0: none"}),
       Field("sensor_channel", s.sensor_channel, closed(0, 8),
             Help{"channel for the sensor's gain; 0: none"}),
-      Field("exposure", s.exposure, at_least(1), Help{"exposure to output, from 1"}),
-      Field("tap", s.tap, at_least(1), Help{"tap for the sensor's channel, from 1"}),
-      Field("all", s.all, Help{"load all exposures; the selected one is output"}));
+      Field("exposure", s.exposure, at_least(1),
+            Help{"number of the exposure to output; the first is 1"}),
+      Field("tap", s.tap, at_least(1),
+            Help{"number of the tap for the sensor's channel; the first is 1"}),
+      Field("all", s.all, Help{"load all exposures; only the selected exposure is output"}));
 }
 
 /// Converts a code to tables for a model. The default sample rate is the highest, with `true_arb`
