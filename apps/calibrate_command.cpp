@@ -89,7 +89,10 @@ void add_calibrate_command(CLI::App& app, Session& session) {
   command->footer(
       "Try: tofsmith calibrate impulse-response scope.csv -o mine.toml\n"
       "     tofsmith calibrate correlation sweep.npy --shifts shifts.txt -o mine.toml\n"
-      "     tofsmith calibrate noise level*.npy --dark dark.npy -o mine.toml");
+      "     tofsmith calibrate noise level*.npy --dark dark.npy -o mine.toml\n"
+      "     tofsmith calibrate temperature raw.npy --code sinusoid-k4 --temperatures t.txt -o "
+      "m.toml\n"
+      "     tofsmith calibrate stray-light spot.npy --dark dark.npy -o kernel.npy");
   add_calibrate_response(*command, session);
   add_calibrate_correlation(*command, session);
   add_calibrate_noise(*command, session);

@@ -267,8 +267,9 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
                    "frames (F,H,W,K) with --shifts; with --reference, raw frames as for decode, "
                    "in one file or one file per measurement")
       ->required();
-  command->add_option("--shifts", arguments->shifts,
-                      "delay of each frame of a stack, one per line or .npy");
+  command->add_option(
+      "--shifts", arguments->shifts,
+      "delay of each frame of a stack: a text file with one delay per line, or .npy");
   command
       ->add_option("--shift-unit", arguments->unit,
                    "unit of the delays: a unit of time, m of depth, bin, or period")

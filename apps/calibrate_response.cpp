@@ -123,10 +123,9 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
       ->check(one_of({"s", "ms", "us", "ns", "ps"}));
   fields.add("decimal", "--decimal");
   command
-      ->add_option(
-          "--arm", arguments->arm,
-          "part of the camera with this response; system: light source and sensor together, "
-          "stored as response of the light source")
+      ->add_option("--arm", arguments->arm,
+                   "measured part of the camera; system: light source and sensor together, stored "
+                   "as response of the light source")
       ->check(one_of({"light", "sensor", "system"}))
       ->capture_default_str();
   command

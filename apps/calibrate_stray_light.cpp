@@ -71,8 +71,8 @@ void add_calibrate_stray_light(CLI::App& calibrate, Session& session) {
   command->add_option("--dark", arguments->dark, "frames with the target covered");
   arguments->camera.add_to(*command);
   command->add_option("-o,--output", arguments->kernel,
-                      "write the kernel, the shares of a pixel's light that other pixels receive "
-                      "(.npy .npz .exr .pfm), for decode --stray-light");
+                      "write the kernel (.npy .npz .exr .pfm), for decode --stray-light; it "
+                      "contains the share of a pixel's light that each other pixel receives");
   command->add_option("--report", arguments->page, "write a page with figures (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }

@@ -136,8 +136,8 @@ void add_cameras_command(CLI::App& app, Session& session) {
       "`decode --raw-format`)");
   command
       ->add_flag("--keys", *keys,
-                 "list unit, range and default of all keys of camera files; if combined with "
-                 "--raw-format, of all keys of raw formats")
+                 "list the keys of camera files with unit, range and default; with --raw-format, "
+                 "list the keys of raw formats instead")
       ->excludes("NAME", "--set");
   command->callback([name, settings, raw_format, keys, &session] {
     if (*keys && *raw_format)

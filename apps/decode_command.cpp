@@ -160,10 +160,10 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
   command
       .add_option(
           "RAW", arguments.raw,
-          "raw frames of F frames, H rows, W columns and K measurements: one file (.npy .npz "
-          ".h5) with (H,W,K) or (F,H,W,K); K files in the order of the measurements, with (H,W) "
-          "or (F,H,W) or grey images (.png .tiff .pgm); files that --raw-format describes; or "
-          "-: standard input, with --raw-format and -o -")
+          "raw measurements: one file (.npy .npz .h5) with (H,W,K) or (F,H,W,K), for F frames, H "
+          "rows, W columns and K measurements per pixel; K files in the order of the measurements, "
+          "with (H,W) or (F,H,W) or grey images (.png .tiff .pgm); files that --raw-format "
+          "describes; or -: standard input, with --raw-format and -o -")
       ->required();
   const FieldOptions request(command, arguments.request);
   CLI::Option* const layout = request.add("layout", "--layout");
@@ -208,7 +208,7 @@ void add_output_options(CLI::App& command, DecodeArguments& arguments) {
       .add_option("-o,--output", arguments.output,
                   "depth file: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd, numbered if "
                   "there are several frames; -: write the planes of each frame, by default only "
-                  "depth, to standard output, in the layout of .npy without its header")
+                  "depth, to standard output, as in a .npy file but without header")
       ->required();
   command
       .add_option("--rays", arguments.rays,

@@ -71,10 +71,10 @@ void require_operating_multipath(const Camera& camera, const char* option) {
 }
 
 void OperatingMultipathArguments::add_to(CLI::App& command, OptimizeOptions& options) {
-  command.add_option("--multipath", returns_,
-                     "design for pixels with a second return, whose ratio and delay [m] are "
-                     "uniform between limits such as ratio=0.1:0.5,delta=0.5:3; overrides "
-                     "[operating.multipath]");
+  command.add_option(
+      "--multipath", returns_,
+      "design for pixels with a second return; its ratio and delay [m] are uniformly distributed "
+      "in the given ranges, such as ratio=0.1:0.5,delta=0.5:3; overrides [operating.multipath]");
   command
       .add_option("--multipath-weight", weight_,
                   "weight w in the objective E1^(1-w) E2^w; E1 is the error without multipath, "
@@ -206,10 +206,10 @@ void add_design_command(CLI::App& app, Session& session) {
   options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   add_field_option(*command, arguments->options.search, "metric", "--search-metric")
       ->group(for_experts);
-  command->add_option("-o,--output", arguments->output,
-                      "output directory for codes and report; repeating the command resumes an "
-                      "interrupted run (default: tofsmith-design; if it exists, the next free "
-                      "tofsmith-design-N)");
+  command->add_option(
+      "-o,--output", arguments->output,
+      "output directory for codes and report; repeating the command resumes an interrupted run "
+      "(default: tofsmith-design; if it contains a finished design, tofsmith-design-2, ...)");
   command->callback([arguments, &session] {
     if (arguments->output.empty()) arguments->output = default_output();
     session.directory = arguments->output;

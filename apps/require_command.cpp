@@ -138,10 +138,10 @@ void run(RequireArguments& arguments, const Session& session) {
 
 void add_require_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RequireArguments>();
-  CLI::App* command = app.add_subcommand(
-      "require",
-      "compute the bandwidth, power or exposure that is necessary for a depth error, and lower "
-      "bounds for all codes");
+  CLI::App* command =
+      app.add_subcommand("require",
+                         "compute the bandwidth, power or exposure that a depth error requires, "
+                         "and lower bounds that are valid for all codes");
   arguments->camera.add_to(*command);
   arguments->camera.add_positional(*command);
   command->add_option("--error", arguments->error, "largest acceptable depth error, such as 5mm")
@@ -163,7 +163,7 @@ void add_require_command(CLI::App& app, Session& session) {
   options.add("map", "!--no-map");
   command->add_option("-o,--output", arguments->output,
                       "write a page (.html), all numbers (.json), or a directory with page, "
-                      "numbers, codes and camera files that reach the error");
+                      "numbers, and the codes and camera files that have the required error");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

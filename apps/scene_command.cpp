@@ -153,11 +153,10 @@ void add_scene_command(CLI::App& app, Session& session) {
       ->add_option("--time-s", arguments->scene.time_s,
                    "time at which a moving scene is rendered [s]; frame 0 begins at 0")
       ->capture_default_str();
-  command->add_option(
-      "-o,--output", arguments->output,
-      "directory for depth, z-depth, albedo, cosine of the angle of incidence, a mask of pixels "
-      "beyond the range and a preview; or one file for the radial distance (.npy .npz .exr .pfm "
-      ".png)");
+  command->add_option("-o,--output", arguments->output,
+                      "directory for radial distance, z-depth, albedo, cosine of the angle of "
+                      "incidence, a mask of pixels beyond the range and a preview; or one file for "
+                      "the radial distance (.npy .npz .exr .pfm .png)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -391,8 +391,8 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->transform(number_in("e/s"));
   command
       ->add_option("--ambient", arguments->ambient_e_per_s,
-                   "ambient light [e/s] (default: from the same source as the default of "
-                   "--signal)")
+                   "ambient light [e/s] (default: from the camera's [optics]; without [optics], "
+                   "the middle of its operating points)")
       ->transform(number_in("e/s"));
   command
       ->add_option("--signal-range", arguments->signal_range,
@@ -405,10 +405,9 @@ void add_simulate_command(CLI::App& app, Session& session) {
                    "drawn log-uniformly")
       ->group(for_experts);
   command
-      ->add_option(
-          "--shard", arguments->shard,
-          "i/n: simulate only the i-th of n parts of several scenes; all parts can have the "
-          "same output directory")
+      ->add_option("--shard", arguments->shard,
+                   "i/n: divide the list of scenes into n parts, and simulate only the i-th part; "
+                   "all parts can have the same output directory")
       ->group(for_experts);
   const FieldOptions options(*command, arguments->options);
   options.add("reference_distance_m", "--reference-distance")->group(for_experts);

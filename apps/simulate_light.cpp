@@ -54,8 +54,8 @@ void MultipathLightArguments::add_to(CLI::App& command) {
       ->group(for_experts);
   command
       .add_option("--multipath-file", returns_,
-                  "multipath returns of every pixel (.npz with the arrays first, distance_m and "
-                  "ratio)")
+                  "multipath returns of every pixel: an .npz file with three arrays, named first, "
+                  "distance_m and ratio")
       ->group(for_experts);
   CLI::Option* transient = command
                                .add_option("--transient", transient_,

@@ -155,7 +155,8 @@ void add_sweep_command(CLI::App& app, Session& session) {
       "SWEEP", arguments->sweep,
       "sweep file (.toml) with camera, codes and an [[axis]] for each varied quantity");
   command->add_option("--store", arguments->store,
-                      "SQLite file for results; finished items are not computed again");
+                      "SQLite file for results; finished items (combinations of axis values) are "
+                      "not computed again");
   command->add_flag("--status", arguments->status,
                     "only list, export and report finished items, without computing others");
   command->add_option("--export", arguments->exports, "write results (.csv .json .npz; repeatable)")

@@ -38,9 +38,10 @@ void TableArguments::add_to(CLI::App& command) {
       ->transform(number_in("m"))
       ->group(for_experts);
   command
-      .add_option("--ambient", ambient_,
-                  "ambient light in the columns of a measured table: equal in all (default, unless "
-                  "the file specifies it), proportional to their mean, or none")
+      .add_option(
+          "--ambient", ambient_,
+          "ambient light in the columns of a measured table: equal in all columns (default, unless "
+          "the file specifies it), proportional to the mean of each column, or none")
       ->check(one_of({"equal", "mean", "none"}))
       ->group(for_experts);
   command

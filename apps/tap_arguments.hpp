@@ -41,9 +41,9 @@ struct TapArguments {
         ->group(for_experts);
     command
         .add_option("--tap-order", order,
-                    "column order of an NPZ code with several taps: all exposures of the first "
-                    "tap first (blocked), or all taps of the first exposure first "
-                    "(interleaved); not detected")
+                    "column order of an NPZ code: all exposures of the first tap first (blocked), "
+                    "or all taps of the first exposure first (interleaved); required for several "
+                    "taps and several exposures")
         ->check(one_of({"blocked", "interleaved"}))
         ->group(for_experts);
   }
