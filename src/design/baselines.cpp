@@ -168,7 +168,8 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
   const std::string worse = fmt::format(
-      "in {} or {} trials per operating point, the error is more than {} times that of the best",
+      "in {} or {} trials per operating point, the error is more than {} times the error of the "
+      "best standard code",
       trials_per_point(camera) / share_looked_at, trials_per_point(camera), contending);
   const std::string beside = fmt::format("{} other codes have smaller errors", max_contenders);
   for (const std::size_t i : order)

@@ -74,8 +74,8 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
   std::string others;
   for (const auto& [exposures, error_m] : error_by_exposures(result, measure))
     if (exposures != winner.exposures)
-      others += fmt::format("{}{} mm with {}", others.empty() ? "" : ", ",
-                            plain_number(1e3 * error_m, 3), exposures);
+      others += fmt::format("{}{} mm ({} exposure{})", others.empty() ? "" : ", ",
+                            plain_number(1e3 * error_m, 3), exposures, exposures == 1 ? "" : "s");
   const int harmonics = useful_harmonics(camera);
   const std::string band =
       harmonics == 0
@@ -92,7 +92,7 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
       winner.exposures, winner.exposures == 1 ? "" : "s",
       others.empty()
           ? std::string()
-          : fmt::format(" The smallest errors with other numbers of exposures are {}.", others));
+          : fmt::format(" With other numbers of exposures, the smallest errors are {}.", others));
 }
 
 std::string what_limits_it(const DesignResult& result) {
@@ -157,13 +157,15 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
 
 std::string behind_motion(double velocity_m_per_s, const ExposureOrder& chosen) {
   const auto rms_mm = [](double error_m) { return fmt::format("{:.3f} mm", 1e3 * error_m); };
-  const std::string text =
-      fmt::format("At {} m/s along the ray, motion between its exposures causes an rms error of {}",
-                  velocity_m_per_s, rms_mm(chosen.rms_bias_m));
+  const std::string text = fmt::format(
+      "At {} m/s along the ray, motion between the exposures of the best code causes an rms error "
+      "of {}",
+      velocity_m_per_s, rms_mm(chosen.rms_bias_m));
   if (std::is_sorted(chosen.order.begin(), chosen.order.end()))
     return text + "; no other order of the exposures was better.";
-  return text + fmt::format("; its exposures were reordered to {}, from {}.",
-                            fmt::join(chosen.order, ", "), rms_mm(chosen.given_rms_bias_m));
+  return text +
+         fmt::format("; the exposures were reordered to {}, and the error decreased from {}.",
+                     fmt::join(chosen.order, ", "), rms_mm(chosen.given_rms_bias_m));
 }
 
 }  // namespace

@@ -227,7 +227,7 @@ KeyValueList camera_description(const Camera& camera) {
                       ? fmt::format("{:.4g} ms in total", camera.exposure_s.total_s * 1e3)
                       : fmt::format("{} listed exposures", camera.exposure_s.each_s.size()));
   add("samples per period", fmt::format("{}", camera.samples));
-  add("peak over average power", fmt::format("{:.4g}", camera.light.peak_factor));
+  add("peak power / average power", fmt::format("{:.4g}", camera.light.peak_factor));
   add("light source", arm_text(camera.light.binary) +
                           "; response: " + response_text(camera.light.impulse_response) +
                           jitter_text(camera.light.edge_jitter_s) +
@@ -246,7 +246,7 @@ KeyValueList camera_description(const Camera& camera) {
                            camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
                            camera.sensor.read_noise_e));
   add("ranked by",
-      fmt::format("{} depth error over {} signal x {} ambient levels",
+      fmt::format("mean {} depth error at {} signal levels x {} ambient levels",
                   name_of(camera.operating.error), camera.operating.signal_e_per_s.size(),
                   camera.operating.ambient_e_per_s.size()));
   if (!DepthPrior(camera).is_uniform()) add("true depths", true_depths_in_words(camera));

@@ -57,17 +57,17 @@ Table comparison(const Camera& camera, const DesignResult& result) {
   const DepthErrorMeasure measure = camera.operating.measure();
   const DepthErrorReport& best = result.winner().error;
   const std::vector<std::size_t> levels = usable_levels(best);
-  Table table{
-      .id = "best",
-      .title = "The best code and the standard codes",
-      .caption = fmt::format(
-          "Error: geometric mean of the {} depth error over the {} of {} light levels at which the "
-          "best code has at most {:.0f} % outliers (errors above {:.2g} m). Ratio: this error "
-          "divided by that of the best code. Codes are ranked by the mean over all light levels.",
-          name_of(measure), levels.size(), best.points.size(), 100 * max_outlier_rate,
-          best.outlier_threshold_m),
-      .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
-      .highlighted_row = 0};
+  Table table{.id = "best",
+              .title = "The best code and the standard codes",
+              .caption = fmt::format(
+                  "Error: geometric mean of the {} depth error over {} of the {} light levels. At "
+                  "these levels, at most {:.0f} % of the depths of the best code are outliers "
+                  "(errors above {:.2g} m). Ratio: error of a code divided by the error of the "
+                  "best code. Codes are ranked by the mean over all light levels.",
+                  name_of(measure), levels.size(), best.points.size(), 100 * max_outlier_rate,
+                  best.outlier_threshold_m),
+              .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
+              .highlighted_row = 0};
   const double best_mm = error_mm(best, levels, measure);
   for (const Candidate* c : compared(result, measure)) {
     const double its_mm = error_mm(c->error, levels, measure);

@@ -67,8 +67,8 @@ Table residual_table(const DesignResult& result) {
       .id = "residuals",
       .caption =
           "One row per measurement of the designed codes. Residual: distance of the selected "
-          "pair of waveforms from the target. Smallest: smallest distance of all pairs "
-          "found; it can be smaller, because pairs are selected by depth error.",
+          "pair of waveforms from the target. Smallest: smallest distance of all pairs found. This "
+          "distance can be smaller than the residual, because pairs are selected by depth error.",
       .columns = {{"code"},
                   {"measurement", true},
                   {"residual", true},

@@ -54,17 +54,18 @@ std::vector<DepthErrorRow> shown_codes(std::span<const DepthErrorRow> codes,
 }
 
 Table distance_table(std::span<const DepthErrorRow> codes, const std::vector<std::size_t>& order) {
-  Table table{.id = "distance-to-bounds",
-              .caption =
-                  "Ratio of the circular error to each bound (geometric mean over the operating "
-                  "points). The Cramér-Rao bound applies to unbiased estimators of one code. The "
-                  "receiver bound applies to all codes of the camera. The direct time-of-flight "
-                  "(ToF) bound applies to all receivers with this light. The unambiguous range "
-                  "limits large errors, but not the bounds, so ratios can be below 1.",
-              .columns = {{"code"},
-                          {"error / Cramér-Rao", true},
-                          {"error / receiver bound", true},
-                          {"error / direct ToF bound", true}}};
+  Table table{
+      .id = "distance-to-bounds",
+      .caption =
+          "Ratio of the circular error to each bound (geometric mean over the operating "
+          "points). The Cramér-Rao bound applies to unbiased estimators of one code. The "
+          "receiver bound applies to all codes of the camera. The direct time-of-flight "
+          "(ToF) bound applies to all receivers that use the same light. The unambiguous range "
+          "limits large errors, but not the bounds, so ratios can be below 1.",
+      .columns = {{"code"},
+                  {"error / Cramér-Rao", true},
+                  {"error / receiver bound", true},
+                  {"error / direct ToF bound", true}}};
   for (const std::size_t i : order) {
     const DepthErrorReport& error = *codes[i].error;
     table.rows.push_back({error.code, mean_times_bound(error, &PointDepthError::cramer_rao_mae_m),
@@ -87,28 +88,31 @@ std::vector<std::size_t> by_error(std::span<const DepthErrorRow> codes, DepthErr
 Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> codes,
                        const std::vector<std::size_t>& order, std::size_t best) {
   const DepthErrorReport& first = *codes[0].error;
-  Table table{.id = "comparison",
-              .caption = fmt::format(
-                  "Errors are geometric means over {} operating points; the column arithmetic "
-                  "contains the arithmetic mean of the circular error. Each operating point has {} "
-                  "trials with N = {} samples per period and true depths {}; ± is one "
-                  "standard error. A tap is a value read out of an exposure. Errors are mean "
-                  "absolute errors; rms columns contain root mean square errors, in which rare "
-                  "large errors dominate. Outliers are circular errors above {:.2g} m.",
-                  first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
-                  first.outlier_threshold_m),
-              .columns = {{"code"},
-                          {"made by"},
-                          {exposures_by_taps_title, true},
-                          {"linear (mm)", true},
-                          {"circular (mm)", true},
-                          {"arithmetic (mm)", true},
-                          {"linear rms (mm)", true},
-                          {"circular rms (mm)", true},
-                          {"outliers (%)", true}}};
+  Table table{
+      .id = "comparison",
+      .caption = fmt::format(
+          "Errors are geometric means over {} operating points; the column arithmetic "
+          "contains the arithmetic mean of the circular error. Each operating point has {} "
+          "trials with N = {} samples per period and true depths {}; ± is one "
+          "standard error. Taps are the values that are read out per exposure. Errors are mean "
+          "absolute errors; rms columns contain root mean square errors, in which rare "
+          "large errors dominate. Outliers are circular errors above {:.2g} m.",
+          first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
+          first.outlier_threshold_m),
+      .columns = {{"code"},
+                  {"made by"},
+                  {exposures_by_taps_title, true},
+                  {"linear (mm)", true},
+                  {"circular (mm)", true},
+                  {"arithmetic (mm)", true},
+                  {"linear rms (mm)", true},
+                  {"circular rms (mm)", true},
+                  {"outliers (%)", true}}};
   if (codes[best].ratio) {
     table.columns.push_back({"ratio", true});
-    table.caption += " Codes are ranked by the ratio of their error to that of the best code.";
+    table.caption +=
+        " Codes are ranked by the column ratio: the error of a code divided by the error of the "
+        "best code.";
   }
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;
@@ -195,11 +199,11 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
   return line_figure(
       {.id = id,
        .title = "Circular depth error over signal",
-       .caption =
-           fmt::format("The ambient light is {} e/s. The Cramér-Rao bound is computed for {}. The "
-                       "receiver bound applies to all codes of the camera, and the direct "
-                       "time-of-flight (ToF) bound to all receivers with this light.",
-                       level_text(ambient), first.code)},
+       .caption = fmt::format(
+           "The ambient light is {} e/s. The Cramér-Rao bound is computed for {}. The "
+           "receiver bound applies to all codes of the camera, and the direct time-of-flight (ToF) "
+           "bound applies to all receivers that use the same light.",
+           level_text(ambient), first.code)},
       series, {.label = "signal", .unit = "e/s", .logarithmic = true},
       {.label = "circular depth error", .unit = "mm", .logarithmic = true});
 }

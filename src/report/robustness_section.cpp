@@ -37,7 +37,7 @@ std::vector<JudgedCode> judged_codes(std::span<const EvaluatedCode> codes) {
 
 std::vector<Row> robustness_rows(const std::vector<JudgedCode>& codes) {
   std::vector<Row> rows{
-      {"code", "camera", "calibrated (mm)", "x nominal", "uncalibrated (mm)", "x nominal"}};
+      {"code", "camera", "calibrated (mm)", "/ nominal", "uncalibrated (mm)", "/ nominal"}};
   for (const JudgedCode& code : codes) {
     const RobustnessReport& r = code.robustness;
     rows.push_back(row(code.name, "nominal", r.nominal_m, r.nominal_m, r.nominal_m));
@@ -55,8 +55,8 @@ Section robustness_section(const std::vector<JudgedCode>& codes) {
       "{} depth error (geometric mean over the operating points) on cameras that differ from "
       "the nominal camera. Calibrated: decoded with the correlation functions of the actual "
       "camera. Uncalibrated: decoded with the correlation functions of the nominal camera. The "
-      "depths and the noise are the same for all cameras.",
-      is_linear ? "Linear" : "Circular");
+      "depths and the noise are the same for all cameras, with {} trials per operating point.",
+      is_linear ? "Linear" : "Circular", codes.empty() ? 0 : codes.front().robustness.trials);
   return {"Robustness",
           {table_of_rows("robustness", std::move(caption), robustness_rows(codes), {0, 1})}};
 }

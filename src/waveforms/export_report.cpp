@@ -58,8 +58,8 @@ std::vector<Row> generator_report_rows(const std::vector<GeneratorReport>& repor
 }
 
 std::vector<Row> generator_loss_rows(const GeneratorLoss& loss, DepthErrorKind kind) {
-  std::vector<Row> rows{{"signal, ambient (e/s)", "nominal (mm)", "actual (mm)", "x nominal",
-                         "uncalibrated (mm)", "x nominal"}};
+  std::vector<Row> rows{{"signal, ambient (e/s)", "nominal (mm)", "actual (mm)", "/ nominal",
+                         "uncalibrated (mm)", "/ nominal"}};
   const auto row = [](std::string name, const Estimate& nominal, const Estimate& actual,
                       const Estimate& uncalibrated) {
     return Row{std::move(name),

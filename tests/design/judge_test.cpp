@@ -239,7 +239,7 @@ TEST(Design, TriesEveryBuiltInCodeAndReportsThoseNotJudged) {
   options.optimize.pool_trials = 1000;
   const DesignResult result = design(camera, options);
   EXPECT_NE(result.find("sinusoid-k4"), nullptr) << "shown, however it does";
-  EXPECT_THAT(result.left_out, Contains(HasSubstr("times that of the best")));
+  EXPECT_THAT(result.left_out, Contains(HasSubstr("times the error of the best standard code")));
   EXPECT_NE(by_geometric_mean_error(result, DepthErrorKind::circular)
                 .front()
                 ->code.name()

@@ -13,8 +13,8 @@ inline constexpr const char* exposures_by_taps_title = "exposures x taps";
 
 /// Explanation of the terms in tables of depth errors.
 inline constexpr const char* depth_error_legend =
-    "tap: value read out of an exposure; linear: error of the depth; circular: error modulo the "
-    "unambiguous range; S, A: signal and ambient light";
+    "taps: values that are read out per exposure; linear: error of the depth; circular: error "
+    "modulo the unambiguous range; S, A: signal and ambient light";
 
 /// Returns the number of exposures and of values per exposure, such as "3 x 2"; "3 x 1" if the
 /// sensor delivers the difference of two taps.
