@@ -333,7 +333,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_option(
       "--perturb", arguments->perturb,
       "also evaluate each code with each listed perturbation and with all of them together, "
-      "such as jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2% "
+      "such as jitter=50ps,clock=5ns,droop=3%; also bandwidth=20%, peak=10%, mismatch=2% "
       "(docs/calibration.md)");
   arguments->taps.add_to(*command);
   command->add_flag("--every-level", arguments->every_level,

@@ -62,8 +62,8 @@ Table comparison(const Camera& camera, const DesignResult& result) {
               .caption = fmt::format(
                   "Error: geometric mean of the {} depth error over {} of the {} light levels. At "
                   "these levels, at most {:.0f} % of the depths of the best code are outliers "
-                  "(errors above {:.2g} m). Ratio: error of a code divided by the error of the "
-                  "best code. Codes are ranked by the mean over all light levels.",
+                  "(errors above {:.2g} m). Ratio: error relative to the best code. Codes are "
+                  "ranked by the mean over all levels.",
                   name_of(measure), levels.size(), best.points.size(), 100 * max_outlier_rate,
                   best.outlier_threshold_m),
               .columns = {{"code"}, {"exposures", true}, {"error (mm)", true}, {"ratio", true}},
@@ -85,23 +85,23 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
   const double best_mm = error_mm(winner.error, levels, measure);
   KeyNumbers numbers{
       {{fmt::format("best code, {} exposures", winner.code.exposures()), winner.code.name()},
-       {fmt::format("{} depth error at {} of {} light levels", name_of(measure), levels.size(),
+       {fmt::format("{} depth error, {} of {} light levels", name_of(measure), levels.size(),
                     winner.error.points.size()),
         fmt::format("{:.1f} mm", best_mm)}}};
   if (winner.multipath)
     numbers.entries.push_back(
-        {"depth error with multipath at all light levels",
+        {"depth error with multipath, all levels",
          fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(measure.kind).value)});
   for (const char* name : {"sinusoid-k4", "square-k4"})
     if (const Candidate* other = result.find(name); other && other != &winner)
       numbers.entries.push_back(
-          {fmt::format("error of {} relative to the best code", name),
+          {fmt::format("error ratio of {}", name),
            fmt::format("{:.2f} times", error_mm(other->error, levels, measure) / best_mm)});
   if (!scene || scene->captures.empty()) return numbers;
   const SceneCapture& brightest = scene->captures.back();
   for (const SceneDecoding& decoding : brightest.decodings)
     if (decoding.code == winner.code.name())
-      numbers.entries.push_back({fmt::format("mean error in the scene, {} light", brightest.light),
+      numbers.entries.push_back({fmt::format("mean scene error, {} light", brightest.light),
                                  fmt::format("{:.1f} mm", 1e3 * decoding.error.mean_m)});
   return numbers;
 }
