@@ -12,8 +12,8 @@ import tofsmith
 code = "multifrequency-4x4-5x4"  # 80 and 100 MHz: 4 and 5 times 20 MHz, four phases each
 camera = tofsmith.Camera("mlx75027", sensor={"adc_bits": 12, "gain_e_per_dn": 40.0})
 scene = tofsmith.built_in_scene("table-top", 160, 120)
-numbers = tofsmith.capture(scene, code, camera, signal_e_per_s=1e7, ambient_e_per_s=1e6)
-numbers = numbers.astype("<i2")  # (H, W, 8), in [-2048, 2047]
+numbers = tofsmith.capture(scene, code, camera, signal_e_per_s=3e7, ambient_e_per_s=1e6)
+numbers = np.clip(np.rint(numbers), -2048, 2047).astype("<i2")  # (H, W, 8)
 np.moveaxis(numbers, 2, 0).tofile("dump.bin")  # eight images, one after another
 
 # %% How the numbers are stored.
@@ -26,7 +26,6 @@ signed = true
 packing = "plain"
 container_bits = 16
 layout = "planar"
-unused_bits = "ignored"  # copies of the sign
 ''')
 
 # %% Depth and status of the pixels.

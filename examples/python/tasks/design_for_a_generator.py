@@ -21,7 +21,10 @@ for candidate in result.by_ranking_error()[:4]:
     print(f"{candidate.code.name}: {candidate.ranking_error_m * 1e3:.1f} mm ({candidate.method})")
 code = result.winner.code
 
-# %% One table per waveform, and a camera with the waveforms that the generator outputs.
-exported = tofsmith.export_waveforms(code, camera, "siglent", "siglent-csv", overwrite=True)
+# %% One table per waveform, and a camera with the waveforms that the generator outputs. A table
+# contains two periods, because a Siglent SDG6022X repeats tables at most 50 million times a second.
+exported = tofsmith.export_waveforms(
+    code, camera, "siglent", "siglent-wvdt16", sample_rate_hz=2.4e9, periods=2, samples=24,
+    overwrite=True)
 print(f"{len(exported.files)} files in siglent")
 tofsmith.write_code("three-taps.code.json", code, overwrite=True)

@@ -5,7 +5,7 @@
 # %% The camera, and its light at this distance.
 import tofsmith
 
-camera = tofsmith.Camera("indoor").at_distances(3, klux=20)
+camera = tofsmith.Camera("indoor", optics={"source_power_w": 5.0}).at_distances(3, klux=20)
 print(f"S = {camera.operating.signal_e_per_s[0]:.3g} e/s, "
       f"A = {camera.operating.ambient_e_per_s[0]:.3g} e/s")
 
