@@ -47,7 +47,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
   DecodeRequest request = arguments.request;
   request.raw.assign(arguments.raw.begin(), arguments.raw.end());
   request.output = arguments.output;
-  request.lens = camera.lens;
+  if (!request.view_deg) request.lens = camera.lens;
   request.time_filter = arguments.filter.time_options();
   request.filter = arguments.filter.options();
   if (!arguments.rays.empty()) request.lens = Lens{.rays = arguments.rays};

@@ -134,7 +134,10 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   request.raw.assign(raw.begin(), raw.end());
   request.output = output;
   request.policy = policy_of(overwrite);
-  request.lens = rays.empty() ? to_optional_lens(lens) : std::optional(Lens{.rays = rays});
+  if (!rays.empty())
+    request.lens = Lens{.rays = rays};
+  else if (!request.view_deg)
+    request.lens = to_optional_lens(lens);
   return request;
 }
 

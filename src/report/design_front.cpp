@@ -85,7 +85,7 @@ KeyNumbers headline(const Camera& camera, const DesignResult& result,
   const double best_mm = error_mm(winner.error, levels, measure);
   KeyNumbers numbers{
       {{fmt::format("best code, {} exposures", winner.code.exposures()), winner.code.name()},
-       {fmt::format("{} depth error, {} of {} light levels", name_of(measure), levels.size(),
+       {fmt::format("{} error, {} of {} light levels", name_of(measure), levels.size(),
                     winner.error.points.size()),
         fmt::format("{:.1f} mm", best_mm)}}};
   if (winner.multipath)

@@ -202,10 +202,7 @@ std::optional<Figure> before_after_figure(const SceneResult& scene, const Camera
   return image_figure(
       {.id = "before-after",
        .title = fmt::format("Depth of the scene {}", scene.name),
-       .caption =
-           fmt::format("{}. The labels contain mean errors without filtering. Drag the border to "
-                       "compare.",
-                       light_text(capture)),
+       .caption = fmt::format("{}. Labels: mean errors, unfiltered.", light_text(capture)),
        .alt_text = fmt::format("Depth decoded with {} on the left and {} on the right",
                                standard->code, best_code)},
       {{.title = "", .pixels = best->depth_m, .before = standard->depth_m}},

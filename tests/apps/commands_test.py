@@ -191,7 +191,10 @@ class Commands(CommandLineTest):
         camera = ("--camera", "paper-10f0", "--code", "sinusoid-k4")
         self.refuse(["decode", "raw.npy", *camera, "-o", "p.ply"], "--view-deg", "[lens]", code=2)
         self.do("decode", "raw.npy", *camera, "--view-deg", "60", "-o", "p.ply")
-        self.do("decode", "raw.npy", "-o", "q.ply")
+        self.do("decode", "raw.npy", "-o", "q.ply")  # raw.camera.toml has [lens]
+        self.do("decode", "raw.npy", "--view-deg", "20", "-o", "r.ply")
+        with open(self.path("q.ply"), "rb") as own, open(self.path("r.ply"), "rb") as given:
+            self.assertNotEqual(own.read(), given.read())
 
     def test_options_take_units(self):
         self.do("simulate", "wall", "--width", "8", "--height", "6", "--code", "sinusoid-k4", "-o",

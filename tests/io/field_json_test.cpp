@@ -131,7 +131,7 @@ void for_each_change(Struct& its, const Visit& visit, const std::string& owner =
     else if constexpr (is_list<Value>)
       value.emplace_back();
     else if constexpr (std::is_enum_v<Value>)
-      value = Value{};
+      value = static_cast<Value>(value == Value{} ? 1 : 0);
     else if constexpr (std::is_same_v<Value, bool>)
       value = !value;
     else

@@ -99,9 +99,11 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
       Field("all_points", r.all_points,
             Help{"also write points of pixels that are not ok (.ply, .pcd)"}),
       Field("lens", r.lens, FieldMark::from_above),
-      Field("view_deg", r.view_deg, open(0, 180),
-            Help{"horizontal angle of view; points and z require it if the camera has no [lens]"},
-            IfAbsent{"none"}),
+      Field(
+          "view_deg", r.view_deg, open(0, 180),
+          Help{"horizontal angle of view, instead of the camera's [lens]; points and z require one "
+               "of them"},
+          IfAbsent{"none"}),
       Field("undistort", r.undistort,
             Help{"write undistorted planes (nearest pixel); pixels outside the lens's view are "
                  "invalid"}),
