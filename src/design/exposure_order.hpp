@@ -7,15 +7,14 @@
 namespace tofsmith {
 
 /// Finds the order of exposures with the smallest rms error of a moving surface, MotionBias. Tries
-/// all orders for up to eight exposures, and otherwise exchanges pairs of exposures until none
-/// reduces the error. Exposures with the same modulation remain adjacent, because calibration and
-/// lists of the camera refer to frequencies. Keeps the order if the camera lists values for
-/// individual exposures, or if neighbouring exposures differ in sensitivity.
+/// all orders for up to eight exposures, and otherwise exchanges pairs. Exposures with the same
+/// modulation remain adjacent, because calibration and lists of the camera refer to frequencies.
+/// Keeps the order if the camera lists values for individual exposures, or if neighbouring
+/// exposures differ in sensitivity.
 ExposureOrder best_exposure_order(const CodeSet& code, const Camera& camera,
                                   double velocity_m_per_s);
 
-/// Reorders the exposures of a candidate, with its reports on measurements, for the camera's
-/// operating.velocity_m_per_s. Changes nothing without velocity.
+/// Reorders the exposures of a candidate if the camera has operating.velocity_m_per_s.
 void choose_exposure_order(const Camera& camera, Candidate& candidate);
 
 }  // namespace tofsmith

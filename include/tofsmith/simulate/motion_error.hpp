@@ -15,30 +15,29 @@
 
 namespace tofsmith {
 
-/// Returns how far a surface has moved along the ray from the middle of a frame to the middle of
-/// each exposure [m], in the order in which the camera captures them.
+/// Movement of a surface along the ray from the middle of a frame to the middle of each exposure
+/// [m], in the order of capture.
 /// @param velocity_m_per_s  positive: away from the camera
 /// @throws std::invalid_argument if the camera lists times for another number of exposures
 Eigen::VectorXd exposure_shifts_m(const CodeSet& code, const Camera& camera,
                                   double velocity_m_per_s);
-/// As above for a camera that lists a time for each exposure.
+/// For cameras that list exposure times.
 Eigen::VectorXd exposure_shifts_m(const Camera& timed, double velocity_m_per_s);
 
 /// Depth error that DecodeMethod::zncc makes without noise if each exposure sees another depth, to
 /// first order in the shifts d_e of the exposures:
 ///   error(z) = sum_e c_e(z) d_e,   c_e = sum_(i in e) g_i x'_i / |g|^2,   sum_e c_e = 1,
 /// where x' is the derivative of the expected measurements and g is its component orthogonal to the
-/// derivatives with respect to signal and ambient light. The decoded depth is therefore the depth
-/// of a moving surface at the weighted mean sum_e c_e t_e of the times of the exposures.
+/// derivatives with respect to signal and ambient light.
 class MotionBias {
  public:
   /// @param camera  the camera of `model`
   MotionBias(const ForwardModel& model, const Camera& camera);
 
   int exposures() const { return static_cast<int>(mean_share_.size()); }
-  /// Mean over the camera's depths of the error [m]. @param shift_m  (exposures)
+  /// Mean over depths [m]. @param shift_m  (exposures)
   double mean_m(const Eigen::VectorXd& shift_m) const { return mean_share_.dot(shift_m); }
-  /// Root mean square over the camera's depths of the error [m]. @param shift_m  (exposures)
+  /// Root mean square over depths [m]. @param shift_m  (exposures)
   double rms_m(const Eigen::VectorXd& shift_m) const;
 
  private:
@@ -77,7 +76,6 @@ auto fields_of(ConstOrNot<MotionPoint> auto& p) {
                     Field("bias_m", p.bias_m), Field("shares", p.shares, FieldMark::in_place));
 }
 
-/// Errors at all operating points.
 struct MotionErrors {
   Estimate geometric_mean_m;        ///< of the circular errors
   WrongShares shares;               ///< means over the operating points
@@ -107,12 +105,11 @@ auto fields_of(ConstOrNot<MotionReport> auto& r) {
 /// Computes the depth error of a surface that moves along the ray, and of an edge that passes
 /// between two exposures, by Monte Carlo simulation with the decoder of `options.method`.
 ///
-/// Each exposure sees the depth in its middle; there is no blur within an exposure, and the signal
-/// does not depend on the depth. Trial t draws a depth in the t-th of `trials` slices with equal
-/// probability, as evaluate(). For an edge, this is the first surface. The second one is drawn from
-/// the same distribution, and the number of exposures that see the first one is uniform.
+/// Each exposure sees the depth in its middle; the signal does not depend on the depth. Depths are
+/// drawn as by evaluate(). For an edge, the second surface is drawn from the same distribution, and
+/// the number of exposures that see the first one is uniform.
 /// @param options  trials, seed, method and unwrap_weights are used
-/// @throws std::invalid_argument as evaluate(); Interrupted if `progress` cancels
+/// @throws InvalidArgument as evaluate(); Interrupted
 /// @note same bits for any number of threads
 MotionReport motion_error(const CodeSet& code, const Camera& camera, double velocity_m_per_s,
                           const EvaluateOptions& options = {}, const Progress& progress = {});

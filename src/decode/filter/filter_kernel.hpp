@@ -130,11 +130,9 @@ struct LightBalance {
   int step = 0;  ///< of the window [pixels]
 };
 
-/// Bound on the bias of a window of similar pixels. The neighbours that the window rejects have
-/// another depth, and the test of pairs cannot distinguish all such pixels from noise. The squared
+/// Bound on the bias of a window of similar pixels, some of which have another depth. The squared
 /// bias is at most share (rejected - by_noise) (v - v'), with the rejected share of the neighbours
-/// and the variances v before and v' after the window. The constants are measured
-/// (benchmarks/scene_deviations.py).
+/// and the variances v before and v' after the window (benchmarks/scene_deviations.py).
 struct BiasBound {
   float share = 0.0f;
   float by_noise = 0.0f;  ///< share of the neighbours that noise rejects on flat surfaces
