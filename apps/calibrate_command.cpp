@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "calibrate_output.hpp"
 #include "commands.hpp"
@@ -38,14 +36,10 @@ void CalibrateOutput::check(const Session& session, const std::vector<std::strin
   policy = session.check_outputs(outputs);
 }
 
-void CalibrateOutput::write_camera(const Camera& camera, const CameraArguments& from,
-                                   const Session& session, const std::string& next) const {
+void CalibrateOutput::write_camera(const Camera& camera, const Session& session,
+                                   const std::string& next) const {
   if (camera_path.empty()) return;
-  std::optional<Camera> assumed;
-  if (std::ranges::count(built_in_camera_names(), from.name) > 0)
-    assumed = built_in_camera(from.name);
-  write_file_atomically(camera_path, calibrated_camera_toml(camera, assumed ? &*assumed : nullptr),
-                        policy);
+  write_file_atomically(camera_path, calibrated_camera_toml(camera), policy);
   session.say(fmt::format(
       "wrote {} (values that were not fitted are from camera {})\nnext: {}", camera_path,
       camera.name,
@@ -90,8 +84,8 @@ void add_calibrate_command(CLI::App& app, Session& session) {
       "Try: tofsmith calibrate impulse-response scope.csv -o mine.toml\n"
       "     tofsmith calibrate correlation sweep.npy --shifts shifts.txt -o mine.toml\n"
       "     tofsmith calibrate noise level*.npy --dark dark.npy -o mine.toml\n"
-      "     tofsmith calibrate temperature raw.npy --code sinusoid-k4 --temperatures t.txt -o "
-      "m.toml\n"
+      "     tofsmith calibrate temperature raw.npy --code sinusoid-k4 --temperatures t.txt "
+      "-o mine.toml\n"
       "     tofsmith calibrate stray-light spot.npy --dark dark.npy -o kernel.npy");
   add_calibrate_response(*command, session);
   add_calibrate_correlation(*command, session);

@@ -174,25 +174,24 @@ void run(CorrelationArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   check_outputs(arguments, session);
   if (!arguments.reference.empty()) {
-    calibrate_by_reference(
-        {{arguments.files.begin(), arguments.files.end()},
-         arguments.raw_format,
-         arguments.dataset,
-         depth_kind_of(arguments.reference, arguments.asked_reference_kind(), DepthKind::radial) ==
-             DepthKind::z,
-         arguments.reference,
-         arguments.table,
-         arguments.output.camera_path,
-         arguments.camera.name,
-         arguments.output.policy,
-         arguments.codes,
-         arguments.taps.file_options(),
-         base,
-         [&](const Camera& camera, const std::string& next) {
-           arguments.output.write_camera(camera, arguments.camera, session, next);
-         },
-         [&](const Page& page) { arguments.output.write_page(page, session); }},
-        session);
+    calibrate_by_reference({{arguments.files.begin(), arguments.files.end()},
+                            arguments.raw_format,
+                            arguments.dataset,
+                            depth_kind_of(arguments.reference, arguments.asked_reference_kind(),
+                                          DepthKind::radial) == DepthKind::z,
+                            arguments.reference,
+                            arguments.table,
+                            arguments.output.camera_path,
+                            arguments.camera.name,
+                            arguments.output.policy,
+                            arguments.codes,
+                            arguments.taps.file_options(),
+                            base,
+                            [&](const Camera& camera, const std::string& next) {
+                              arguments.output.write_camera(camera, session, next);
+                            },
+                            [&](const Page& page) { arguments.output.write_page(page, session); }},
+                           session);
     return;
   }
   if (arguments.files.size() > 1)
@@ -248,8 +247,7 @@ void run(CorrelationArguments& arguments, const Session& session) {
   if (!arguments.output.camera_path.empty()) {
     if (fits.empty())
       throw UsageError("-o: no code was fitted, so the impulse responses are unknown");
-    arguments.output.write_camera(with_fit(base, fits.front(), found.tap_mismatch),
-                                  arguments.camera, session);
+    arguments.output.write_camera(with_fit(base, fits.front(), found.tap_mismatch), session);
   }
 }
 

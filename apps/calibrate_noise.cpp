@@ -82,7 +82,7 @@ void run(NoiseArguments& arguments, const Session& session) {
   session.say(text_table(noise_rows(found)));
   session.say(note_lines(found.notes));
   arguments.output.write_page(noise_report(found, session.command_line), session);
-  arguments.output.write_camera(with_noise(base, found), arguments.camera, session);
+  arguments.output.write_camera(with_noise(base, found), session);
 }
 
 }  // namespace

@@ -31,10 +31,8 @@ struct CalibrateOutput {
   /// Checks these outputs and `others` (empty: none) before the computation.
   /// @throws UsageError, IoError
   void check(const Session& session, const std::vector<std::string>& others = {});
-  /// Marks values of a built-in camera as not measured.
-  /// @param from  selects the camera that was calibrated
   /// @param next  suggested next command; empty: a design for the camera
-  void write_camera(const Camera& camera, const CameraArguments& from, const Session& session,
+  void write_camera(const Camera& camera, const Session& session,
                     const std::string& next = "") const;
   void write_page(const Page& page, const Session& session) const;
 };

@@ -94,7 +94,7 @@ void run(ResponseArguments& arguments, const Session& session) {
   arguments.output.write_page(response_report(result, arguments.file, session.command_line),
                               session);
   arguments.output.write_camera(with_response(base, response, parse_response_arm(arguments.arm)),
-                                arguments.camera, session);
+                                session);
 }
 
 }  // namespace

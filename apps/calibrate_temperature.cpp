@@ -132,7 +132,7 @@ void run(TemperatureArguments& arguments, const Session& session) {
   arguments.output.write_page(temperature_report(found, arguments.file, session.command_line),
                               session);
   arguments.output.write_camera(
-      camera_of(camera, found, arguments), arguments.camera, session,
+      camera_of(camera, found, arguments), session,
       fmt::format(
           "tofsmith decode RAW --code {} --camera {} --temperature {:.0f}{}", arguments.code,
           arguments.output.camera_path, found.mean_c,

@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "bindings.hpp"
 #include "options.hpp"
 #include "output_policy.hpp"
@@ -98,14 +93,7 @@ void write_responding(const CalibratedResponse& found, const std::string& path,
   const ResponseArm whose = parse_response_arm(arm);
   const ImpulseResponse response = write_response_beside(
       path, response_of(found, parse_response_kind(kind)), policy_of(overwrite));
-  const std::vector<std::string> names = built_in_camera_names();
-  std::optional<Camera> assumed;
-  if (std::find(names.begin(), names.end(), camera.name) != names.end())
-    assumed = built_in_camera(camera.name);
-  const bool is_built_in = assumed && *assumed == camera;
-  write_file_atomically(path,
-                        calibrated_camera_toml(with_response(camera, response, whose),
-                                               is_built_in ? &*assumed : nullptr),
+  write_file_atomically(path, calibrated_camera_toml(with_response(camera, response, whose)),
                         policy_of(overwrite));
 }
 

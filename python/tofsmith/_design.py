@@ -52,9 +52,15 @@ class SearchRecord:
 
 @dataclass(frozen=True)
 class ExposureOrder:
-    """Order of exposures that a design chose for moving surfaces. `order` lists the number in the
-    proposed code of each exposure; `rms_bias_m` is the rms depth error due to motion in this order,
-    and `given_rms_bias_m` that in the order of the proposed code."""
+    """Order of exposures that a design chose for moving surfaces.
+
+    Attributes
+    ----------
+    order : list of int
+        For each exposure, its former number, from 0.
+    rms_bias_m, given_rms_bias_m : float
+        Root mean square depth error due to motion, in this order and in the former order.
+    """
 
     order: list[int]
     rms_bias_m: float

@@ -43,7 +43,7 @@ Section operating_multipath_section(const OperatingMultipath& returns, const Des
           "with a second return of ratio {} to {} at a delay of {} to {} m and single-path "
           "decoding. Two-return: circular error with the same second return and two-return "
           "decoding. Codes are ranked by E1^{:.3g} E2^{:.3g}; two-return errors much larger than "
-          "those of standard codes are penalized.",
+          "the errors of standard codes are penalized.",
           name_of(kind), returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
           1.0 - returns.weight, returns.weight),
       .columns = {{"code"},

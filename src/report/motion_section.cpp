@@ -76,12 +76,12 @@ Section motion_section(std::span<const EvaluatedCode> codes) {
           fmt::format(
               "A surface moves along the ray at {} m/s while exposures follow one another. Bias: "
               "rms depth error without noise, relative to the middle of the frame. Error: "
-              "circular error with noise. Wrong: share of depths with more than three predicted "
-              "standard deviations. Detected: share of the wrong depths with status inconsistent. "
-              "Edge: between two exposures, one of two surfaces at random depths covers the other; "
-              "a depth is wrong if it differs from the depths of both surfaces. Edge ok: share of "
-              "wrong depths with status ok. Rows "
-              "of all light levels contain the geometric mean of the error and means of shares.",
+              "circular error with noise. Wrong: share of depths whose error exceeds three "
+              "predicted standard deviations. Detected: share of the wrong depths with status "
+              "inconsistent. Edge: between two exposures, one of two surfaces at random depths "
+              "covers the other; a depth is wrong if it differs from the depths of both surfaces. "
+              "Edge ok: share of wrong depths with status ok. Rows of all light levels contain the "
+              "geometric mean of the error and means of shares.",
               first->motion->velocity_m_per_s),
           motion_rows(codes, true), {0})}};
 }

@@ -143,7 +143,7 @@ def test_random_faults_never_verify_a_wrong_waveform(family):
         faulty.address, timeout_s=0.1, output_on=on))
 
 
-class MemorySession(instruments._Session):
+class MemorySession(instruments.Session):
     """A connection to a simulated generator without network; answers arrive immediately or never.
     """
 
@@ -172,7 +172,7 @@ class MemorySession(instruments._Session):
 def test_300_random_faults_without_network(family, monkeypatch):
     def upload_to(faulty, on):
         with monkeypatch.context() as patch:
-            patch.setattr(instruments, "_Session", MemorySession)
+            patch.setattr(instruments, "Session", MemorySession)
             patch.setattr(MemorySession, "simulated", faulty)
             return upload("127.0.0.1", timeout_s=0.002, output_on=on)
 

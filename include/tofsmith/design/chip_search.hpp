@@ -73,10 +73,10 @@ CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::strin
 
 /// Variance of depth that the search minimizes.
 enum class ChipMetric {
-  unknown_light,  ///< of depth estimated together with signal and ambient light
-  /// Of depth estimated with known signal and ambient light, as in the depth variance metric of
-  /// "Revisiting Optimal Coding for I-ToF under Practical Sensor Constraints" (CVPR 2026). Smaller
-  /// than what a camera can reach; for comparison.
+  /// Variance of depth that is estimated together with signal and ambient light.
+  unknown_light,
+  /// The same with known signal and ambient light, which no camera reaches; for comparison with
+  /// "Revisiting Optimal Coding for I-ToF under Practical Sensor Constraints" (CVPR 2026).
   known_light,
 };
 constexpr std::array<std::string_view, 2> words_of(ChipMetric /*any*/) {

@@ -59,9 +59,9 @@ std::string camera_keys_json();
 /// @throws std::invalid_argument if the camera is invalid
 std::string camera_to_toml(const Camera& camera);
 /// Returns a calibrated camera as TOML without optional keys that equal their default, so that the
-/// file contains no values that nobody specified.
-/// @param assumed  camera whose values have a comment in the file; null: no comments
-std::string calibrated_camera_toml(const Camera& camera, const Camera* assumed);
+/// file contains no values that nobody specified. If it has the name of a built-in camera, values
+/// of that camera have the comment "not measured".
+std::string calibrated_camera_toml(const Camera& camera);
 /// Returns a lens as JSON on one line, with the keys of a camera file.
 std::string lens_to_json(const Lens& lens);
 /// Inverse of lens_to_json(); does not check the values.

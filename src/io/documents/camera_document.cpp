@@ -100,16 +100,17 @@ void remove_defaults(nlohmann::ordered_json& document) {
 
 }  // namespace
 
-std::string calibrated_camera_toml(const Camera& camera, const Camera* assumed) {
+std::string calibrated_camera_toml(const Camera& camera) {
   nlohmann::ordered_json document = camera_document(camera);
   remove_defaults(document);
   const std::string toml = format_toml(document);
-  if (assumed == nullptr) return toml;
-  const nlohmann::ordered_json others = camera_document(*assumed);
+  const std::vector<std::string> built_in = built_in_camera_names();
+  if (std::find(built_in.begin(), built_in.end(), camera.name) == built_in.end()) return toml;
+  const nlohmann::ordered_json others = camera_document(built_in_camera(camera.name));
   return with_comments(toml, [&](const std::string& key) {
     const auto place = pointer_to(key);
     return others.contains(place) && document.contains(place) && others[place] == document[place]
-               ? fmt::format("of the camera {}, not measured", assumed->name)
+               ? fmt::format("of the camera {}, not measured", camera.name)
                : "";
   });
 }
