@@ -3,6 +3,7 @@
 #include "tofsmith/decode/frame_pipeline.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,7 @@ class CpuPipeline final : public FramePipeline {
     if (!is_filtered_) filter_frame(progress, {});
     return filtered_.view();
   }
+  const Image<float>& deviation_factor() const override { return filtered_.deviation_factor(); }
 
  private:
   void filter_frame(const Progress& progress, const Image<std::uint8_t>& left_out) {
@@ -127,6 +129,10 @@ void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, s
   if (corrections.mixed)
     mark_mixed_pixels(table, pipeline.numbers(), *corrections.mixed, decoded, corrections.maps, {},
                       unfiltered);
+  const Image<float>& factor = pipeline.deviation_factor();
+  if (decoded.deviation_m && !factor.empty())
+    std::transform(factor.pixels.begin(), factor.pixels.end(), decoded.deviation_m,
+                   decoded.deviation_m, std::multiplies<>());
   if (wanted.averaged) keep_averaged(pipeline.numbers(), wanted.averaged);
 }
 

@@ -88,6 +88,7 @@ class DevicePipeline final : public FramePipeline {
     is_filtered_ = true;
     return filtered_.view();
   }
+  const Image<float>& deviation_factor() const override { return filtered_.deviation_factor(); }
 
  private:
   bool accumulates_on_device() const {

@@ -21,17 +21,21 @@ class FilteredRows {
   FilteredRows(const Filter::Plan& plan, const RawView& raw, FilteredFrame& frame)
       : planes_(planes_of(frame)) {
     planes_.resize(raw.height, raw.width, raw.measurements, 1);
+    planes_.reserve_deviation_factors(plan.options.slope_rounds > 0);
     planes_.noise = plan.noise_ratios();
     planes_.result = 0;
   }
 
-  void fetch(const DeviceQueue& queue, const DeviceRaw& from, int first_row, int rows) {
+  void fetch(const DeviceFrame& frame, const DeviceRaw& from, int first_row, int rows) {
+    const DeviceQueue& queue = frame.queue();
     const auto width = static_cast<std::size_t>(planes_.grid.width),
                pixels = width * static_cast<std::size_t>(rows),
                measurements = static_cast<std::size_t>(planes_.measurements);
     numbers_.resize(pixels * measurements);
     queue.download(*from.numbers(), numbers_.size() * sizeof(float), numbers_.data());
     queue.download(*from.averaged(), pixels * sizeof(float), &planes_.averaged(first_row, 0));
+    if (const DeviceMemory* factors = frame.deviation_factors())
+      queue.download(*factors, pixels * sizeof(float), &planes_.deviation_factor(first_row, 0));
     const float* row_of_numbers = numbers_.data();
     for (int k = 0; k < planes_.measurements; ++k)
       for (int row = first_row; row < first_row + rows; ++row, row_of_numbers += width)
@@ -102,7 +106,7 @@ std::int64_t DeviceFilter::Plan::run_band(const FrameSource& source, IndexRange 
   const DeviceRaw& out = after ? after->tile.reserve_planes(pixels, noise) : result;
   frame.write(first - from, count, out);
   frame.queue().finish();
-  if (filtered) filtered->fetch(frame.queue(), out, first, count);
+  if (filtered) filtered->fetch(frame, out, first, count);
   const std::size_t first_pixel =
       static_cast<std::size_t>(first) * static_cast<std::size_t>(raw.width);
   return after ? after->decode_what_is_there(decoded.from(first_pixel)) : 0;

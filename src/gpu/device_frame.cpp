@@ -60,8 +60,8 @@ std::int64_t DeviceFrame::bytes(int rows, int width) const {
   const FilterGrid grid = FilterPlanes::grid_of(rows, width, step);
   const auto of_planes = static_cast<std::int64_t>(
       4 * (grid.floats(planes_of_frame(plan_)) + grid.floats(weight_planes)));
-  // Raw numbers, mask of excluded pixels, and two tiles of a decoder.
-  return of_planes + std::int64_t{rows} * width * (4 * (k + 1) + 1 + 2 * tile_.bytes_per_pixel());
+  // Raw numbers, factors, mask of excluded pixels, and two tiles of a decoder.
+  return of_planes + std::int64_t{rows} * width * (4 * (k + 2) + 1 + 2 * tile_.bytes_per_pixel());
 }
 
 void DeviceFrame::resize(int rows, int width) {
@@ -87,7 +87,8 @@ void DeviceFrame::release() {
   tile_.release();
   raw_.release();
   has_margins_ = false;
-  for (DeviceMemory* memory : {&planes_, &weights_, &left_out_}) *memory = DeviceMemory();
+  for (DeviceMemory* memory : {&planes_, &weights_, &left_out_, &factors_})
+    *memory = DeviceMemory();
 }
 
 ResultParameters DeviceFrame::result(int set, int measured) const {
@@ -134,12 +135,15 @@ void DeviceFrame::filter(const FrameSource& frame, int first_row, int rows,
   result_ = from;
 }
 
-void DeviceFrame::write(int first_row, int rows, const DeviceRaw& to) const {
+void DeviceFrame::write(int first_row, int rows, const DeviceRaw& to) {
   ResultParameters r = result(result_, 1 - result_);
   r.first_row = first_row;
   r.rows = rows;
+  if (deviation_factors())
+    reserve(queue(), factors_,
+            std::int64_t{rows} * parameters_.width * std::int64_t{sizeof(float)});
   run(write_filtered_, parameters_, r, raw_.tile(), &words_, raw_.numbers(), raw_.averaged(),
-      &planes_, to.numbers(), to.averaged());
+      &planes_, to.numbers(), to.averaged(), deviation_factors());
 }
 
 void DeviceFrame::read(int set, FilterPlanes::Scalar usable, bool with_variance) const {

@@ -30,7 +30,11 @@ class DeviceFrame {
   void filter(const FrameSource& frame, int first_row, int rows, const std::uint8_t* left_out,
               const StepDone& step_done);
   /// Writes some rows, counted from the first filtered row.
-  void write(int first_row, int rows, const DeviceRaw& to) const;
+  void write(int first_row, int rows, const DeviceRaw& to);
+  /// FilteredFrame::deviation_factor() of the rows of write(); null without slope rounds.
+  const DeviceMemory* deviation_factors() const {
+    return plan_.options.slope_rounds > 0 ? &factors_ : nullptr;
+  }
   void release();
 
   const DeviceQueue& queue() const { return tile_.queue(); }
@@ -62,7 +66,7 @@ class DeviceFrame {
       keep_bright_, find_own_light_, leave_dark_, find_own_amplitude_, add_slope_noise_,
       write_filtered_;
   FilterParameters parameters_;
-  DeviceMemory words_, planes_, weights_, left_out_;
+  DeviceMemory words_, planes_, weights_, left_out_, factors_;
   bool has_left_out_ = false;
   bool has_margins_ = false;
   DeviceRaw raw_;

@@ -78,6 +78,7 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("PLANE_SIGNAL_NEXT", FilterPlanes::signal_next);
   c.add("PLANE_AMPLITUDE", FilterPlanes::signal_next);
   c.add("PLANE_SHIFT", FilterPlanes::shift);
+  c.add("PLANE_REJECTED", FilterPlanes::rejected);
   c.add("PLANE_BEFORE", before_plane(plan.measurements));
   c.add("PATCH_REACH", patch_reach);
   c.add("WINDOW_REACH", window_reach);
@@ -107,6 +108,9 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("SLOPE_ERROR_SHARE", slope_error_share);
   c.add("BALANCED_ENERGY", balanced_energy);
   c.add("EVIDENT_SIGMA", evident_sigma);
+  c.add("EDGE_BIAS_FROM", edge_bias.from);
+  c.add("EDGE_BIAS_FULL", edge_bias.full);
+  c.add("EDGE_BIAS_NEAR", edge_bias.near);
   c.add("OWN_LIGHT_REACH", own_light_reach);
   c.add("OWN_LIGHT_LEAST_SIGMA", own_light_least_sigma);
   c.add("OWN_LIGHT_LEAST_SHARE", own_light_least_share);

@@ -280,6 +280,7 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
   for (int k = 0; k < MEASUREMENTS; ++k) sum[k] = plane_of(&p, planes, w.rest + k)[at];
   const float part = w.is_balanced ? balanced_part(&p, &w, tables, planes, at) : 0.0f;
   float signal = signals[at], variance = variances[at], weight = 1.0f, shift = 0.0f;
+  float others = 0.0f;
   float middle = signal, across = 0.0f, along = 0.0f;
   for (int i = 0; i < HALF_WINDOW; ++i) {
     const int down = half_window_rows[i] * w.step, right = half_window_columns[i] * w.step;
@@ -298,6 +299,7 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
       behind.shifted *= left_behind;
     }
     weight += ahead.weight + behind.weight;
+    others += ahead.weight + behind.weight;
     variance = product_plus(ahead.weight * ahead.weight, variances[at + away], variance);
     variance = product_plus(behind.weight * behind.weight, variances[at - away], variance);
     const float signal_ahead = signals[at + away], signal_behind = signals[at - away];
@@ -320,6 +322,8 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
   plane_of(&p, planes, w.variance_out)[at] = variance * (inverse * inverse);
   for (int k = 0; k < MEASUREMENTS; ++k) plane_of(&p, planes, w.to + k)[at] = sum[k] * inverse;
   join(&p, tables, planes, w.to, at, signal * inverse, shift * inverse);
+  if (!w.is_balanced)
+    plane_of(&p, planes, PLANE_REJECTED)[at] = rejected_share(&p, w.step, x, y, others);
   if (!w.is_last) return;
   const float squares = product_plus(across, across, along * along);
   const float most = middle * middle * (float)(WINDOW_REACH * WINDOW_REACH);

@@ -193,14 +193,18 @@ int places_inside(int at, int size, int step) {
   return places;
 }
 
+/// As rejected_share() on the CPU.
+/// @param sum  of the weights of the neighbours
+float rejected_share(const struct FilterParameters* p, int step, int x, int y, float sum) {
+  const int places = places_inside(y, p->height, step) * places_inside(x, p->width, step);
+  return 1.0f - sum / (float)(places > 1 ? places - 1 : 1);
+}
+
 /// Returns the variance of a window with the bound on the squared bias, as add_bias().
 /// @param sum  of the weights of the neighbours
 float variance_with_bias(const struct FilterParameters* p, const struct SimilarParameters* w, int x,
                          int y, float sum, float before, float variance) {
-  const int places =
-      places_inside(y, p->height, w->step) * places_inside(x, p->width, w->step);
-  const float others = (float)(places > 1 ? places - 1 : 1);
-  const float any_rejected = (1.0f - w->bias_by_noise) - sum / others;
+  const float any_rejected = rejected_share(p, w->step, x, y, sum) - w->bias_by_noise;
   const float rejected = LARGER(any_rejected, 0.0f);
   const float any_removed = before - variance, removed = LARGER(any_removed, 0.0f);
   return w->bias_share > 0.0f ? product_plus(rejected * w->bias_share, removed, variance)
@@ -433,25 +437,41 @@ float lit_share(const struct FilterParameters* p, const struct ResultParameters*
   return variance / (variance + square);
 }
 
+/// As deviation_factor() on the CPU.
+float deviation_factor(float rejected, float averaged) {
+  const float near =
+      clamp((rejected - EDGE_BIAS_FROM) / (EDGE_BIAS_FULL - EDGE_BIAS_FROM), 0.0f, 1.0f);
+  const float any_beyond = rejected - EDGE_BIAS_FULL, any_more = averaged - 1.0f;
+  const float alone = LARGER(any_beyond, 0.0f) * LARGER(any_more, 0.0f);
+  return sqrt((1.0f + EDGE_BIAS_NEAR * near) + alone);
+}
+
 /// Pixels without additions keep their measured numbers.
+/// @param factors  of the deviations; null: not written
 kernel void write_filtered(const struct FilterParameters p, const struct ResultParameters r,
                            const struct TileParameters tile, Floats tables,
                            global const uchar* raw_numbers, Floats averaged_before,
-                           global float* planes, global float* raw, global float* averaged) {
+                           global float* planes, global float* raw, global float* averaged,
+                           global float* factors) {
   const int x = (int)get_global_id(0), row = (int)get_global_id(1), y = r.first_row + row;
   if (x >= p.width || row >= r.rows) return;
   const int at = y * p.stride + x, measured = y * p.width + x;
   const int pixel = row * p.width + x, pixels = p.width * r.rows;
   const float before = averaged_before ? averaged_before[measured] : 1.0f;
   float numbers[MEASUREMENTS];
-  float n = raw_of_light(&p, &r, tables, before, planes, at, numbers);
+  float n = raw_of_light(&p, &r, tables, before, planes, at, numbers), factor = 1.0f;
   if (is_own_light(&p, &r, planes, at)) {
     n *= lit_share(&p, &r, planes, at);
+    const float single = plane_of(&p, planes, PLANE_VARIANCE)[at];
+    if (factors)
+      factor = deviation_factor(plane_of(&p, planes, PLANE_REJECTED)[at],
+                                single / plane_of(&p, planes, r.last_variance)[at]);
   } else {
     n = before;
     for (int k = 0; k < MEASUREMENTS; ++k)
       numbers[k] = raw_number(&tile, raw_numbers, measured, k);
   }
   averaged[pixel] = n;
+  if (factors) factors[pixel] = factor;
   for (int k = 0; k < MEASUREMENTS; ++k) raw[(size_t)k * pixels + pixel] = numbers[k];
 }

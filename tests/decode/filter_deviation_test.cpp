@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "decode_setup.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/frame_pipeline.hpp"
 
 namespace tofsmith {
 namespace {
@@ -118,6 +120,63 @@ TEST_P(FilterDeviation, IsAtMostAThirdTooSmallNearAnEdge) {
     return from_border(row, column) >= 8 && (column == 47 || column == 48);
   };
   EXPECT_LT(repeats.ratio(beside_edge), 1.3);
+}
+
+/// Square of the depth error over that of the deviation which decode_frame() reports: median over
+/// pixels of the ratio of means over captures.
+double squared_error_ratio(const DecodeSetup& setup, FilterStrength strength,
+                           const SceneOfPixels& scene, const Part& part) {
+  const DecodingTable& table = setup.decoder.table();
+  const Filter filter(table, FilterOptions::of(strength));
+  const std::unique_ptr<FrameBackend> backend =
+      cpu_backend(make_decoder(DecodeMethod::zncc, table));
+  const std::unique_ptr<FramePipeline> pipeline =
+      backend->prepare({.filter = &filter, .keeps_filtered = true}, height, width);
+  DepthImage image(height, width);
+  std::vector<double> errors(height * width), variances(height * width), ratios;
+  for (unsigned capture = 1; capture <= captures; ++capture) {
+    const RawFrames raw = frame_by_pixel(
+        table.measurements(), height, width, capture,
+        [&](int y, int x, RandomStream& random, std::vector<float>& values) {
+          const Seen seen = scene(y, x);
+          append_noisy_pixel(table, seen.signal_e_per_s, 1e4, seen.depth_bin, random, values);
+        });
+    pipeline->submit(view_of_frame(raw, 0));
+    decode_frame(*pipeline, {}, 0, height, DecodedView::of(image));
+    for (int i = 0; i < height * width; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double bins = image.depth_m.pixels[at] / table.bin_m();
+      const double error =
+          std::remainder(bins - scene(i / width, i % width).depth_bin, table.bin_count());
+      errors[at] += error * error;
+      variances[at] += std::pow(image.deviation_m.pixels[at] / table.bin_m(), 2);
+    }
+  }
+  for (int i = 0; i < height * width; ++i)
+    if (part(i / width, i % width))
+      ratios.push_back(errors[static_cast<std::size_t>(i)] /
+                       variances[static_cast<std::size_t>(i)]);
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
+// Without the bias, the ratio is about six times as large.
+TEST_P(FilterDeviation, IncludesTheBiasNearTheEdgeOfACurvedSurface) {
+  const auto ball = [](int row, int column) {
+    const double radius = std::hypot(row - 32.0, column - 48.0) / 24.0;
+    return radius < 1.0 ? Seen{60.0 - 8.0 * std::sqrt(1.0 - radius * radius), 1e5}
+                        : Seen{90.0, 5e4};
+  };
+  const auto beside_edge = [](int row, int column) {
+    return std::abs(std::hypot(row - 32.0, column - 48.0) - 23.0) < 1.0;
+  };
+  EXPECT_LT(squared_error_ratio(setup, GetParam(), ball, beside_edge), 3.0);
+}
+
+TEST_P(FilterDeviation, IncludesNoBiasOnAFlatPlane) {
+  const auto plane = [](int, int) { return Seen{61.3, 3e4}; };
+  EXPECT_NEAR(squared_error_ratio(setup, GetParam(), plane, is_inner), 1.0, 0.2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Strengths, FilterDeviation, testing::ValuesIn(all_filter_strengths),

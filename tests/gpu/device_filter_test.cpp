@@ -50,8 +50,10 @@ double share_beyond(const FilteredFrame& a, const FilteredFrame& b, double most)
   };
   compare(values.values, expected.values);
   compare(a.averaged().pixels, b.averaged().pixels);
+  EXPECT_EQ(a.deviation_factor().size(), b.deviation_factor().size());
+  compare(a.deviation_factor().pixels, b.deviation_factor().pixels);
   return static_cast<double>(count) /
-         static_cast<double>(values.values.size() + b.averaged().size());
+         static_cast<double>(values.values.size() + 2 * b.averaged().size());
 }
 
 /// Tolerance for devices with other rounding; small frames may exceed it.

@@ -88,6 +88,7 @@ class FailingPipeline final : public FramePipeline {
   }
   RawView measured() override { return works_->measured(); }
   RawView numbers(const Progress& progress) override { return works_->numbers(progress); }
+  const Image<float>& deviation_factor() const override { return works_->deviation_factor(); }
 
  private:
   std::unique_ptr<FramePipeline> works_;

@@ -80,6 +80,9 @@ class FilteredFrame {
   /// (H, W): effective number of averaged measurements; 1 for unfiltered pixels. Without slope
   /// rounds, the variance includes a bound on the squared bias.
   const Image<float>& averaged() const;
+  /// (H, W): factor of `deviation_m` that includes the bias near depth edges; empty without slope
+  /// rounds.
+  const Image<float>& deviation_factor() const;
 
  private:
   friend class Filter;

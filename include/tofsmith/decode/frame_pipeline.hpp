@@ -71,6 +71,9 @@ class FramePipeline {
   /// Numbers that are decoded, valid until the next submit() or decode(). A spatial filter requires
   /// FrameSteps::keeps_filtered.
   virtual RawView numbers(const Progress& progress = {}) = 0;
+  /// FilteredFrame::deviation_factor() of the frame that was decoded last; empty without a spatial
+  /// filter.
+  virtual const Image<float>& deviation_factor() const = 0;
 
  private:
   const DepthDecoder& decoder_;
@@ -107,8 +110,8 @@ struct PlaneCorrections {
 };
 
 /// Decodes the ready frame, or rows of it, and corrects its planes. With a spatial filter, the
-/// plane `averaged` requires FrameSteps::keeps_filtered, and a frame with mixed pixels is filtered
-/// again without them.
+/// planes `averaged` and `deviation` require FrameSteps::keeps_filtered, and a frame with mixed
+/// pixels is filtered again without them.
 /// @param first_row, rows  submitted rows
 /// @param decoded          planes whose first value belongs to the first row
 /// @throws as FramePipeline::decode()

@@ -69,7 +69,8 @@ std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int w
   const std::size_t weights = options.slope_rounds > 0 ? 2 : 1;
   return sizeof(float) *
          (FilterPlanes::floats(grid, measurements) +
-          static_cast<std::size_t>(height) * static_cast<std::size_t>(width) +
+          (options.slope_rounds > 0 ? 2 : 1) * static_cast<std::size_t>(height) *
+              static_cast<std::size_t>(width) +
           strips * (weights * weight_floats(grid, strip) + scratch_floats(grid, strip)));
 }
 
@@ -105,6 +106,7 @@ void Filter::apply(const RawView& stored, FilteredFrame& filtered, const Progres
     plan.add_slope_noise(frame, round);
   }
   frame.result = from;
+  frame.reserve_deviation_factors(plan.options.slope_rounds > 0);
   frame.noise = plan.noise_ratios();
   plan.finish(raw, frame, from, to);
 }

@@ -148,23 +148,30 @@ HWY_INLINE Vector places_inside(Vector at, int size, int step) {
   return places;
 }
 
-/// Adds the bound on the squared bias to the variances of a row. Pixels without a usable
+/// Returns the rejected share of the neighbours of pixels of row y. Pixels without a usable
 /// measurement count as rejected, pixels outside of the frame do not.
+HWY_INLINE Vector rejected_share(const FilterGrid& grid, const FilterStrip& strip,
+                                 const RowPairs& pairs, int y, int x) {
+  const Vector one = all(1.0f);
+  Vector sum = hn::Zero(Floats());
+  for (std::size_t i = 0; i < half_window.size(); ++i)
+    sum = hn::Add(sum, hn::Add(load(pairs.ahead.data()[i] + x), load(pairs.behind.data()[i] + x)));
+  const Vector rows = places_inside(all(static_cast<float>(y)), grid.height, strip.step);
+  const Vector columns =
+      places_inside(hn::Iota(Floats(), static_cast<float>(x)), grid.width, strip.step);
+  const Vector others = hn::Max(hn::MulSub(rows, columns, one), one);
+  return hn::Sub(one, hn::Div(sum, others));
+}
+
+/// Adds the bound on the squared bias to the variances of a row.
 HWY_INLINE void add_bias(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
                          const RowPairs& pairs, int y) {
   const std::ptrdiff_t row = y * grid.stride;
-  const Vector zero = hn::Zero(Floats()), one = all(1.0f);
-  const Vector share = all(sums.bias.share), most = all(1.0f - sums.bias.by_noise);
-  const Vector rows = places_inside(all(static_cast<float>(y)), grid.height, strip.step);
+  const Vector zero = hn::Zero(Floats());
+  const Vector share = all(sums.bias.share), by_noise = all(sums.bias.by_noise);
   for (int x = 0; x < grid.width; x += lanes_of()) {
-    Vector sum = zero;
-    for (std::size_t i = 0; i < half_window.size(); ++i)
-      sum =
-          hn::Add(sum, hn::Add(load(pairs.ahead.data()[i] + x), load(pairs.behind.data()[i] + x)));
-    const Vector columns =
-        places_inside(hn::Iota(Floats(), static_cast<float>(x)), grid.width, strip.step);
-    const Vector others = hn::Max(hn::MulSub(rows, columns, one), one);
-    const Vector rejected = hn::Max(hn::Sub(most, hn::Div(sum, others)), zero);
+    const Vector rejected =
+        hn::Max(hn::Sub(rejected_share(grid, strip, pairs, y, x), by_noise), zero);
     float* const variance = sums.variance_out + row + x;
     const Vector removed = hn::Max(hn::Sub(load(sums.variance + row + x), load(variance)), zero);
     store(hn::MulAdd(hn::Mul(rejected, share), removed, load(variance)), variance);
@@ -210,7 +217,11 @@ void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const Filter
     shifted = own_pairs(shifted, balanced.own_shifted, balanced.stride);
   }
   add_variances(sums, pairs, grid.width, row, inverse_sum);
-  if (sums.bias.share > 0.0f) add_bias(sums, grid, strip, pairs, strip.first_row + r);
+  const int y = strip.first_row + r;
+  if (sums.bias.share > 0.0f) add_bias(sums, grid, strip, pairs, y);
+  if (sums.rejected)
+    for (int x = 0; x < grid.width; x += lanes_of())
+      store(rejected_share(grid, strip, pairs, y, x), sums.rejected + row + x);
   int k = 0;
   for (; k + 5 <= sums.planes; k += 5) add_planes<5>(sums, k, pairs, grid.width, row, inverse_sum);
   for (; k + 4 <= sums.planes; k += 4) add_planes<4>(sums, k, pairs, grid.width, row, inverse_sum);

@@ -146,6 +146,7 @@ struct WeightedSums {
   const float* variance = nullptr;
   float* variance_out = nullptr;
   BiasBound bias;                     ///< added to variance_out
+  float* rejected = nullptr;          ///< share of the neighbours without weight; may be null
   const float* shifted_in = nullptr;  ///< may be null
   float* shifted_out = nullptr;
   const LightBalance* balance = nullptr;  ///< for shifted_in; null: no balancing

@@ -305,6 +305,18 @@ void Filter::Plan::leave_dark(const RawView& raw, FilterPlanes& frame, int set, 
   });
 }
 
+void Filter::Plan::write_deviation_factors(FilterPlanes& frame, int row,
+                                           const float* is_filtered) const {
+  const std::ptrdiff_t at = row * frame.grid.stride;
+  const float* const rejected = frame.scalar(FilterPlanes::rejected) + at;
+  const float* const single = frame.scalar(FilterPlanes::variance) + at;
+  const float* const left = frame.scalar(last_variance()) + at;
+  float* const factor = &frame.deviation_factor(row, 0);
+  for (int x = 0; x < frame.grid.width; ++x)
+    factor[x] =
+        is_filtered[x] > 0.0f ? tofsmith::deviation_factor(rejected[x], single[x] / left[x]) : 1.0f;
+}
+
 void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int other) const {
   read_again(raw, frame, other, FilterPlanes::usable);
   const OwnLightTest test = own_light_test(frame, set, other);
@@ -327,6 +339,7 @@ void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int 
     float* const averaged = &frame.averaged(row, 0);
     write_raw_row(raw, frame, set, set, row, averaged);
     for (int x = 0; x < frame.grid.width; ++x) averaged[x] *= share[x];
+    if (options.slope_rounds > 0) write_deviation_factors(frame, row, is_filtered);
     const float* const measured = averaged_of(raw, row, 0);
     for_each_run(raw, std::int64_t{row} * raw.width, raw.width,
                  [&](const auto* pixel, std::int64_t length, std::int64_t) {

@@ -80,6 +80,7 @@ struct Filter::Plan {
   void find_hidden_noise(const RawView& raw, FilterPlanes& frame, int row) const;
   void write_raw_row(const RawView& raw, FilterPlanes& frame, int from, int to, int row,
                      float* averaged) const;
+  void write_deviation_factors(FilterPlanes& frame, int row, const float* is_filtered) const;
   CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
   void split(FilterPlanes& frame, int from, int to, int row) const;
   void join(FilterPlanes& frame, int set, int row) const;

@@ -62,6 +62,13 @@ void FilterPlanes::resize(int height, int width, int measurements_, int largest_
     lit_points.push_back(step.rows * grid.stride + step.columns);
 }
 
+void FilterPlanes::reserve_deviation_factors(bool are_wanted) {
+  if (!are_wanted)
+    deviation_factor = {};
+  else if (deviation_factor.height != grid.height || deviation_factor.width != grid.width)
+    deviation_factor = Image<float>(grid.height, grid.width, 1.0f);
+}
+
 FilteredFrame::FilteredFrame() : planes_(std::make_unique<FilterPlanes>()) {}
 FilteredFrame::~FilteredFrame() = default;
 FilteredFrame::FilteredFrame(FilteredFrame&&) noexcept = default;
@@ -70,6 +77,7 @@ FilteredFrame& FilteredFrame::operator=(FilteredFrame&&) noexcept = default;
 int FilteredFrame::height() const { return planes_->grid.height; }
 int FilteredFrame::width() const { return planes_->grid.width; }
 const Image<float>& FilteredFrame::averaged() const { return planes_->averaged; }
+const Image<float>& FilteredFrame::deviation_factor() const { return planes_->deviation_factor; }
 
 RawView FilteredFrame::view() const {
   const FilterPlanes& p = *planes_;

@@ -44,6 +44,7 @@ struct FilterPlanes {
     signal,       ///< along the previous depth [e/s]; at the end, from find_own_light()
     signal_next,  ///< at the end, from find_own_amplitude()
     shift,        ///< of signal_next beyond the slope [e/s bin]; at the end, from find_lit_share()
+    rejected,     ///< share of the nearest neighbours, in the last pass along slopes
     scalars
   };
 
@@ -54,6 +55,7 @@ struct FilterPlanes {
   std::vector<float> storage;
   Image<float>
       averaged;  ///< along slopes: variance of a coordinate that determined the depth [e^2]
+  Image<float> deviation_factor;           ///< empty without passes along slopes
   std::vector<std::ptrdiff_t> lit_points;  ///< lit_bar_points() as offsets [floats]
   NoiseRatios noise;
   const std::uint8_t* left_out = nullptr;  ///< (H, W), or null
@@ -63,6 +65,7 @@ struct FilterPlanes {
   static FilterGrid grid_of(int height, int width, int largest_step);
   static std::size_t floats(const FilterGrid& grid, int measurements);
   void resize(int height, int width, int measurements_, int largest_step);
+  void reserve_deviation_factors(bool are_wanted);
   float* plane(int index) { return storage.data() + index * grid.plane_floats() + grid.origin(); }
   const float* plane(int index) const { return const_cast<FilterPlanes*>(this)->plane(index); }
   float* scalar(Scalar which) { return plane(which); }

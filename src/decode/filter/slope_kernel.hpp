@@ -118,6 +118,19 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
 /// all from twice that ratio on. Far neighbours would bias the depth and thus the slopes.
 void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row);
 
+/// Bias of a pass along slopes where other surfaces are near. The squared bias, relative to the
+/// variance v of the result, increases to `near` while the rejected share of the nearest neighbours
+/// increases from `from` to `full`. Beyond that it increases by (v0 / v - 1) per rejected share,
+/// with the variance v0 of the pixel's own measurements (benchmarks/scene_deviations.py).
+struct EdgeBias {
+  float from = 0.2f, full = 0.45f, near = 6.0f;
+};
+inline constexpr EdgeBias edge_bias;
+/// Returns the factor of the deviation of the result.
+/// @param rejected  share of the nearest neighbours
+/// @param averaged  v0 / v
+float deviation_factor(float rejected, float averaged);
+
 /// Variance added to a sum along slopes by the noise of the slopes:
 ///   v (sum + sum_offset d^2) + v' (before + before_offset d^2)
 /// with the variance v of the sum without it, the variance v' of the depth that determined the

@@ -28,6 +28,13 @@ SlopeNoise slope_noise_of(int windows, int round) {
   return (round == 0 ? first_slope_noise : later_slope_noise)[windows - 1];
 }
 
+float deviation_factor(float rejected, float averaged) {
+  const float near =
+      std::clamp((rejected - edge_bias.from) / (edge_bias.full - edge_bias.from), 0.0f, 1.0f);
+  const float alone = std::max(rejected - edge_bias.full, 0.0f) * std::max(averaged - 1.0f, 0.0f);
+  return std::sqrt(1.0f + edge_bias.near * near + alone);
+}
+
 /// The noise of slopes affects the depth only, not the residual. Neighbours with the same wrong
 /// lobe support each other, because slopes are fitted to the depths of one lobe; the ratio 1.3 was
 /// determined with benchmarks/reliability.py. After two passes the residual has no ratio: errors in
@@ -167,6 +174,7 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
   sums.out[static_cast<std::size_t>(sums.planes++)] = frame.scalar(FilterPlanes::signal_next);
   sums.shifted_in = frame.scalar(FilterPlanes::signal);
   sums.shifted_out = frame.scalar(FilterPlanes::shift);
+  if (window == 0) sums.rejected = frame.scalar(FilterPlanes::rejected);
   const LightBalance balance{.depth = test.depth,
                              .slope_x = test.slope_x,
                              .slope_y = test.slope_y,
