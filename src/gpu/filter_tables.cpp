@@ -108,6 +108,7 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("SLOPE_ERROR_SHARE", slope_error_share);
   c.add("BALANCED_ENERGY", balanced_energy);
   c.add("EVIDENT_SIGMA", evident_sigma);
+  c.add("LIT_ALONE_SHARE", lit_alone_share);
   c.add("EDGE_BIAS_FROM", edge_bias.from);
   c.add("EDGE_BIAS_FULL", edge_bias.full);
   c.add("EDGE_BIAS_NEAR", edge_bias.near);

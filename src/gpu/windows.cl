@@ -419,8 +419,9 @@ float lit_share(const struct FilterParameters* p, const struct ResultParameters*
   float around = 0.0f;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) around += amplitude[at + dy * p->stride + dx];
-  const bool is_lit_around =
-      added <= LIT_AROUND_SIGMA || around * (1.0f / 9.0f) >= added * LIT_BAR_SHARE;
+  const bool is_alone = plane_of(p, planes, PLANE_REJECTED)[at] > LIT_ALONE_SHARE;
+  const bool is_lit_around = !is_alone && (added <= LIT_AROUND_SIGMA ||
+                                           around * (1.0f / 9.0f) >= added * LIT_BAR_SHARE);
   int point = 0, scale = 0;
   for (int bar = 0; bar < LIT_BARS; ++bar) {
     if (is_lit_around && added <= lit_max_added[bar]) {

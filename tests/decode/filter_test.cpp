@@ -259,6 +259,28 @@ TEST(Filter, GivesNoDepthWhereThereIsNoLight) {
     }
 }
 
+TEST(Filter, DarkPixelsBetweenTwoSurfacesAreWrongNoMoreOftenThanUnfilteredOnes) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  constexpr int line = 32;
+  const auto depth = [](int row) { return row < line ? 96.0 : 44.4; };
+  const RawFrames raw = frame_seen(table, 64, 400, [&](int row, int) {
+    return Seen{depth(row), row == line ? 1e3 : row < line ? 4.3e4 : 2e5};
+  });
+  const auto wrong = [&](const DepthImage& image) {
+    int count = 0;
+    for (int x = 0; x < 400; ++x)
+      count += image.status(line, x) == PixelStatus::ok &&
+               std::abs(bin_error(table, image.depth_m(line, x), depth(line))) > 7.0;
+    return count;
+  };
+  const int unfiltered = wrong(setup.decoder.decode(raw));
+  for (const FilterStrength strength : {FilterStrength::normal, FilterStrength::strong})
+    EXPECT_LE(wrong(decoded(setup.decoder, Filter(table, options_of(strength)).apply(raw))),
+              unfiltered)
+        << name_of(strength);
+}
+
 TEST(Filter, IgnoresAndKeepsInvalidAndSaturatedPixels) {
   Camera camera = camera_with("paper-10f0");
   camera.sensor.full_well_e = 1e4;

@@ -326,10 +326,12 @@ void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int 
     find_own_amplitude(test, frame.grid, row, here);
     std::fill(here + frame.grid.width, here + frame.grid.stride, 0.0f);
   });
-  const LitTest lit{.light = &test,
-                    .amplitude = amplitude,
-                    .variance = frame.scalar(last_variance()),
-                    .points = frame.lit_points.data()};
+  const LitTest lit{
+      .light = &test,
+      .amplitude = amplitude,
+      .variance = frame.scalar(last_variance()),
+      .rejected = options.slope_rounds > 0 ? frame.scalar(FilterPlanes::rejected) : nullptr,
+      .points = frame.lit_points.data()};
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t start = row * frame.grid.stride;
     float* const is_filtered = frame.scalar(FilterPlanes::signal) + start;

@@ -91,11 +91,14 @@ void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float*
     const Mask is_lit_around =
         hn::Or(hn::Le(added, all(lit_around_sigma)),
                hn::Ge(mean_around(amplitude, grid.stride), hn::Mul(added, all(lit_bar_share))));
+    const Mask is_alone =
+        hn::Gt(test.rejected ? load(test.rejected + at) : hn::Zero(Floats()), all(lit_alone_share));
+    const Mask can_be_lit = hn::AndNot(is_alone, is_lit_around);
     const std::ptrdiff_t* points = test.points;
     for (std::size_t b = 0; b < lit_bars.size(); ++b) {
       const LitBar& bar = lit_bars.data()[b];
       const Mask is_open =
-          hn::And(hn::AndNot(is_lit, is_lit_around), hn::Le(added, all(bar.max_added_sigma)));
+          hn::And(hn::AndNot(is_lit, can_be_lit), hn::Le(added, all(bar.max_added_sigma)));
       if (!hn::AllFalse(Floats(), is_open)) {
         const Mask is_lit_here =
             is_lit_by_bars(amplitude, points, bar, scales.data()[b].data(), added);

@@ -46,6 +46,10 @@ std::vector<WindowStep> lit_bar_points();
 /// Returns 1 / the standard deviation of the sum of the first rows of a bar.
 float lit_bar_scale(const LitBar& bar, int rows);
 
+/// Rejected share of the nearest neighbours above which only a pixel's own measurements prove its
+/// light: it can be on another surface than the pixels in opposite directions.
+inline constexpr float lit_alone_share = 0.45f;
+
 /// Writes the amplitude of the measured light of each pixel of a row in the direction of the added
 /// light [standard deviations]; 0 for unusable pixels. Writes whole vectors.
 void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
@@ -55,6 +59,7 @@ struct LitTest {
   const OwnLightTest* light = nullptr;
   const float* amplitude = nullptr;  ///< from find_own_amplitude(), with margins of 0
   const float* variance = nullptr;   ///< of a coordinate of the added light
+  const float* rejected = nullptr;   ///< share of the nearest neighbours; null: 0
   /// Offsets in the grid [floats].
   const std::ptrdiff_t* points = nullptr;
 };
