@@ -47,9 +47,8 @@ CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySwe
 
 Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int height,
                                     int width) {
-  if (!camera.lens)
-    throw std::invalid_argument(
-        "target_distance_m requires the camera's [lens], which defines the ray of each pixel");
+  require(camera.lens.has_value(), "target_distance_m", distance_m,
+          "requires the camera's [lens], which defines the ray of each pixel");
   const PixelRays rays = rays_of(camera.lens, view_of(camera.lens, width, height));
   Image<float> geometry_m(height, width);
   for (int row = 0; row < height; ++row)

@@ -48,10 +48,11 @@ std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
                                              const UploadSelection& selection) {
   selection.validate();
   const int taps = exported.shared_taps ? 1 : exported.taps;
-  if (selection.exposure > exported.exposures || selection.tap > taps)
-    throw std::invalid_argument(
-        fmt::format("found exposure {} and tap {}; expected at most {} and {} of {}",
-                    selection.exposure, selection.tap, exported.exposures, taps, exported.code));
+  require(
+      selection.exposure <= exported.exposures, "exposure", selection.exposure,
+      fmt::format("must be at most {}, the exposures of {}", exported.exposures, exported.code));
+  require(selection.tap <= taps, "tap", selection.tap,
+          fmt::format("must be at most {}, the taps of {}", taps, exported.code));
   std::vector<UploadChannel> channels;
   if (selection.light_channel > 0)
     channels.push_back(

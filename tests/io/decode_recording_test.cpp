@@ -409,8 +409,7 @@ TEST(LoadDecodingTable, AcceptsOptionsOfTablesForTablesOnly) {
       [] {
         load_decoding_table("hamiltonian-k3", built_in_camera("paper-10f0"), {.range_m = 3.0});
       },
-      ThrowsMessage<std::invalid_argument>(
-          HasSubstr("range_m: is only valid with a measured table")));
+      ThrowsMessage<std::invalid_argument>(HasSubstr("must be a measured table for range_m")));
 }
 
 std::size_t number_of_points(const std::filesystem::path& ply) {

@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
 
 #include "io/arrays/npy_header.hpp"
 #include "io/half_precision.hpp"
 #include "io/shared/byte_order.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 namespace {
@@ -64,24 +64,19 @@ std::string describe_shape(const NpyShape& shape) {
 
 NpyArray::NpyArray(NpyType type, NpyShape shape) : type_(type), shape_(std::move(shape)) {
   const auto bytes = npy_byte_count(type_, shape_);
-  if (!bytes)
-    throw std::invalid_argument(
-        fmt::format("shape = {}; must fit in memory", describe_shape(shape_)));
+  require(bytes.has_value(), "shape", describe_shape(shape_), "must fit in memory");
   bytes_.resize(*bytes);
 }
 
 void NpyArray::fill(std::span<const std::byte> values) {
-  if (values.size() != bytes_.size())
-    throw std::invalid_argument(fmt::format("values = {} items; must be {} for shape {}",
-                                            values.size() / item_size(type_), size(),
-                                            describe_shape(shape_)));
+  require(values.size() == bytes_.size(), "number of values", values.size() / item_size(type_),
+          fmt::format("must be {} for shape {}", size(), describe_shape(shape_)));
   std::copy(values.begin(), values.end(), bytes_.begin());
 }
 
 void NpyArray::check_type(NpyType asked) const {
   if (asked == type_ || (asked == NpyType::uint8 && type_ == NpyType::boolean)) return;
-  throw std::invalid_argument(
-      fmt::format("type = {}; must be {} here", name_of(type_), name_of(asked)));
+  reject("type", name_of(type_), fmt::format("must be {} here", name_of(asked)));
 }
 
 std::vector<double> NpyArray::to_doubles() const { return to_numbers<double>(*this); }

@@ -238,11 +238,8 @@ std::string serialize_npy_header(NpyType type, const NpyShape& shape) {
   constexpr std::size_t alignment = 64, prefix = 10;
   literal.append(alignment - (prefix + literal.size() + 1) % alignment, ' ');
   literal += '\n';
-  if (literal.size() > 0xffff)
-    throw std::invalid_argument(
-        fmt::format("shape has {} axes; must be few enough for a header "
-                    "of 65535 bytes",
-                    shape.size()));
+  require(literal.size() <= 0xffff, "axes of the shape", shape.size(),
+          "must fit in a header of 65535 bytes");
   std::string header = "\x93NUMPY";
   header += {'\x01', '\x00', static_cast<char>(literal.size() & 0xff),
              static_cast<char>(literal.size() >> 8)};

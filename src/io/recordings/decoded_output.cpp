@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -123,10 +122,9 @@ void write_decoded(const std::filesystem::path& path, const DepthImage& image,
                    const std::vector<DecodedPlane>& planes, const PinholeView& view,
                    OutputPolicy policy, bool all_points) {
   for (const DecodedPlane plane : planes)
-    if (with_plane(
-            plane, [](const auto& values) { return values.empty(); }, image))
-      throw std::invalid_argument(
-          fmt::format("planes = {}; must be planes that the image has", name_of(plane)));
+    require(!with_plane(
+                plane, [](const auto& values) { return values.empty(); }, image),
+            "planes", name_of(plane), "must be planes that the image has");
   check_decoded_output(path, policy);
   write_planes(path, image, planes, DepthKind::radial,
                holds_points(path) ? PixelRays(view) : PixelRays(), all_points, policy);

@@ -39,11 +39,10 @@ void refuse_table_options(const std::string& code, const DecodingTableOptions& o
                             : options.axes           ? "axes"
                             : options.keep_end_point ? "keep_end_point"
                                                      : nullptr;
-  if (field)
-    throw std::invalid_argument(
-        fmt::format("{}: is only valid with a measured table; {} is a code, for which the camera "
-                    "determines these values",
-                    field, code));
+  require(
+      !field, "code", code,
+      fmt::format("must be a measured table for {}; for a code, the camera determines this value",
+                  field ? field : ""));
 }
 
 void apply(const DecodingTableOptions& options, MeasuredTable& measured) {
