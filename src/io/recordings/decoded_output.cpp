@@ -14,6 +14,7 @@
 #include "io/images/depth_kind_fields.hpp"
 #include "io/images/exr.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/point_cloud.hpp"
