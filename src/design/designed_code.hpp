@@ -10,9 +10,6 @@
 
 namespace tofsmith {
 
-/// As a share of the integration time.
-inline constexpr double min_exposure_share = 0.01;
-
 CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
                   std::uint64_t seed);
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "design/baselines.hpp"
-#include "design/designed_code.hpp"
+#include "design/exposure_shares.hpp"
 
 namespace tofsmith {
 

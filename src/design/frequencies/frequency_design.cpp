@@ -11,6 +11,7 @@
 #include "core/shared/list_text.hpp"
 #include "design/baselines.hpp"
 #include "design/designed_code.hpp"
+#include "design/exposure_shares.hpp"
 #include "design/frequencies/frequency_search.hpp"
 #include "design/judge.hpp"
 

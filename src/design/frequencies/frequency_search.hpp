@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "design/designed_code.hpp"
+#include "design/exposure_shares.hpp"
 #include "design/frequencies/frequency_choice.hpp"
 #include "design/frequencies/square_error.hpp"
 #include "tofsmith/core/progress.hpp"
