@@ -141,6 +141,46 @@ TEST(DepthErrorLoss, GradientWithRespectToWaveformsMatchesFiniteDifferences) {
     }
 }
 
+TEST(DepthErrorLoss, GradientWithRespectToSharesMatchesFiniteDifferences) {
+  const double total_s = 0.3;
+  const Eigen::VectorXd shares{{0.2, 0.4, 0.15, 0.25}};
+  for (Setting setting : settings())
+    for (const bool circular : {false, true}) {
+      const auto split_by = [&](const Eigen::VectorXd& by) {
+        setting.camera.exposure_s.each_s.clear();
+        for (const double share : by) setting.camera.exposure_s.each_s.push_back(total_s * share);
+        return setting.sampled();
+      };
+      const SampledCamera camera = split_by(shares);
+      SampledCode code = setting.code;
+      code.shares = shares;
+      const SampledCamera::Measured measured =
+          split_by(Eigen::VectorXd::Constant(4, 0.25)).measure(code);
+      EXPECT_TRUE(measured.times.exposure_s.isApprox(camera.exposure_s()));
+      EXPECT_TRUE(measured.times.constant_variance_e2.isApprox(camera.constant_variance_e2()));
+      const TrialBatch batch = trials_for(setting, 20, !circular, circular);
+      DepthErrorLoss loss(camera, measured.table, measured.times,
+                          circular ? DepthErrorKind::circular : DepthErrorKind::linear);
+      const double sharpness = 1.2 / loss.mean_variance_e2(setting.point);
+      loss.soft_error(setting.point, batch, sharpness, 1.0);
+      Eigen::VectorXd by_exposure_s = Eigen::VectorXd::Zero(camera.measurements());
+      loss.gradient(&by_exposure_s);
+      const Eigen::VectorXd gradient = camera.pull_back_times(by_exposure_s);
+      constexpr double step = 1e-6;
+      for (Eigen::Index e = 0; e < shares.size(); ++e) {
+        const auto error_at = [&](double share) {
+          Eigen::VectorXd moved = shares;
+          moved[e] = share;
+          return reference_soft_error(split_by(moved), measured.table, setting.point, batch,
+                                      sharpness, circular);
+        };
+        EXPECT_NEAR(gradient[e],
+                    (error_at(shares[e] + step) - error_at(shares[e] - step)) / (2 * step),
+                    2e-3 * gradient.norm());
+      }
+    }
+}
+
 TEST(DepthErrorLoss, WeightsAndPointsAdd) {
   const Setting setting;
   const SampledCamera camera = setting.sampled();

@@ -17,7 +17,7 @@ SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
   const int repeat = judge.samples() / code.samples();
   if (repeat == 1) return code;
   SampledCode fine{Eigen::MatrixXd(judge.samples(), code.modulation.cols()),
-                   Eigen::MatrixXd(judge.samples(), code.demodulation.cols())};
+                   Eigen::MatrixXd(judge.samples(), code.demodulation.cols()), code.shares};
   for (int n = 0; n < judge.samples(); ++n) {
     fine.modulation.row(n) = code.modulation.row(n / repeat);
     fine.demodulation.row(n) = code.demodulation.row(n / repeat);
@@ -118,8 +118,8 @@ double CodeJudge::log_error(const SampledCode& code) const {
   double worst = -1e300;
   std::vector<double> decoded_bin;
   for (const CameraVariant& variant : problem_->variants) {
-    DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
-                        problem_->operating.error);
+    const SampledCamera::Measured measured = variant.judge.measure(code);
+    DepthErrorLoss loss(variant.judge, measured.table, measured.times, problem_->operating.error);
     double sum = 0.0;
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
       loss.decode(variant.levels[p].point, judging_[p], decoded_bin);
@@ -136,8 +136,8 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
   const int samples = code.samples();
   std::vector<double> worst(static_cast<std::size_t>(samples), -1e300), decoded_bin;
   for (const CameraVariant& variant : problem_->variants) {
-    DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
-                        problem_->operating.error);
+    const SampledCamera::Measured measured = variant.judge.measure(code);
+    DepthErrorLoss loss(variant.judge, measured.table, measured.times, problem_->operating.error);
     std::vector<double> log_error(worst.size(), 0.0);
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
       const DepthPrior& depths = problem_->depths;

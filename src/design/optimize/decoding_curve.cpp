@@ -12,13 +12,10 @@ namespace {
 
 int padded_stride(int samples) { return whole_vectors(samples + 1) + widest_vector; }
 
-Eigen::VectorXd relative_exposure(const SampledCamera& camera) {
-  return camera.exposure_s() / camera.exposure_s().mean();
-}
-
 /// Zero if ambient light is not estimated.
-Eigen::VectorXd ambient_direction(const SampledCamera& camera, const MeasurementTable& table) {
-  const Eigen::VectorXd ambient = relative_exposure(camera).cwiseProduct(table.ambient_gain);
+Eigen::VectorXd ambient_direction(const SampledCamera& camera, const MeasurementTable& table,
+                                  const Eigen::VectorXd& relative_exposure) {
+  const Eigen::VectorXd ambient = relative_exposure.cwiseProduct(table.ambient_gain);
   const double length = ambient.norm();
   if (!camera.ambient_unknown() || length == 0.0) return Eigen::VectorXd::Zero(ambient.size());
   return ambient / length;
@@ -27,10 +24,15 @@ Eigen::VectorXd ambient_direction(const SampledCamera& camera, const Measurement
 }  // namespace
 
 template <typename Value>
-DecodingCurveOf<Value>::DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table)
-    : samples(table.samples()), measurements(table.measurements()), stride(padded_stride(samples)) {
-  const Eigen::VectorXd direction = ambient_direction(camera, table);
-  exact_points = table.correlation * relative_exposure(camera).asDiagonal();
+DecodingCurveOf<Value>::DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table,
+                                        const Eigen::VectorXd& times_s)
+    : samples(table.samples()),
+      measurements(table.measurements()),
+      stride(padded_stride(samples)),
+      exposure_s(times_s) {
+  const Eigen::VectorXd relative = exposure_s / exposure_s.mean();
+  const Eigen::VectorXd direction = ambient_direction(camera, table, relative);
+  exact_points = table.correlation * relative.asDiagonal();
   exact_points -= (exact_points * direction) * direction.transpose();
   const auto size = static_cast<std::size_t>(stride);
   points.assign(size * static_cast<std::size_t>(measurements), Value{0});
@@ -63,7 +65,8 @@ void CurveGradientOf<Value>::clear() {
 template <typename Value>
 void CurveGradientOf<Value>::pull_back(const SampledCamera& camera, const MeasurementTable& table,
                                        const DecodingCurveOf<Value>& curve,
-                                       MeasurementTable& gradient) const {
+                                       MeasurementTable& gradient,
+                                       Eigen::VectorXd* by_exposure_s) const {
   const int samples = curve.samples;
   Eigen::MatrixXd by_points(samples, curve.measurements);
   for (int j = 0; j < samples; ++j) {
@@ -78,17 +81,26 @@ void CurveGradientOf<Value>::pull_back(const SampledCamera& camera, const Measur
   }
   // p_j = x_j - a (a . x_j) / |a|^2, with a / |a| = n. The gradient w.r.t. x_j is P G_j; w.r.t. a
   // it is -sum_j [P G_j (n . x_j) + p_j (n . G_j)] / |a|.
-  const Eigen::VectorXd exposure = relative_exposure(camera);
-  const Eigen::VectorXd direction = ambient_direction(camera, table);
+  const Eigen::VectorXd exposure = curve.exposure_s / curve.exposure_s.mean();
+  const Eigen::VectorXd direction = ambient_direction(camera, table, exposure);
   const Eigen::VectorXd along = by_points * direction;
   by_points -= along * direction.transpose();
   gradient.correlation += by_points * exposure.asDiagonal();
-  if (direction.isZero(0.0)) return;
-  const Eigen::VectorXd curve_along = (table.correlation * exposure.asDiagonal()) * direction;
-  const double length = exposure.cwiseProduct(table.ambient_gain).norm();
-  const Eigen::VectorXd by_ambient =
-      -(by_points.transpose() * curve_along + curve.exact_points.transpose() * along) / length;
-  gradient.ambient_gain += by_ambient.cwiseProduct(exposure);
+  Eigen::VectorXd by_ambient = Eigen::VectorXd::Zero(curve.measurements);
+  if (!direction.isZero(0.0)) {
+    const Eigen::VectorXd curve_along = (table.correlation * exposure.asDiagonal()) * direction;
+    const double length = exposure.cwiseProduct(table.ambient_gain).norm();
+    by_ambient =
+        -(by_points.transpose() * curve_along + curve.exact_points.transpose() * along) / length;
+    gradient.ambient_gain += by_ambient.cwiseProduct(exposure);
+  }
+  if (!by_exposure_s) return;
+  // x_i = g_i chi_i, a_i = g_i kappa_i, and g_i = T_i / mean T has the mean 1.
+  const Eigen::VectorXd by_relative =
+      by_points.cwiseProduct(table.correlation).colwise().sum().transpose() +
+      by_ambient.cwiseProduct(table.ambient_gain);
+  const double along_times = by_relative.dot(exposure) / curve.measurements;
+  *by_exposure_s += (by_relative.array() - along_times).matrix() / curve.exposure_s.mean();
 }
 
 template struct DecodingCurveOf<float>;

@@ -38,7 +38,10 @@ using AlignedFloats = Aligned<float>;
 /// @tparam Value  float, or double to compare gradients with finite differences
 template <typename Value>
 struct DecodingCurveOf {
-  DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table);
+  DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table)
+      : DecodingCurveOf(camera, table, camera.exposure_s()) {}
+  DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table,
+                  const Eigen::VectorXd& exposure_s);
 
   const Value* component(int r) const { return points.data() + r * stride; }
 
@@ -48,6 +51,7 @@ struct DecodingCurveOf {
   Aligned<Value> squares;        ///< Q_jj, j in [0, N]
   Aligned<Value> products;       ///< Q_j,j+1, j in [0, N)
   Eigen::MatrixXd exact_points;  ///< (N, R)
+  Eigen::VectorXd exposure_s;    ///< T (R)
 };
 using DecodingCurve = DecodingCurveOf<float>;
 
@@ -55,8 +59,10 @@ template <typename Value>
 struct CurveGradientOf {
   explicit CurveGradientOf(const DecodingCurveOf<Value>& curve);
   void clear();
+  /// Adds to `gradient` and, unless null, to the gradient w.r.t. the integration times (R).
   void pull_back(const SampledCamera& camera, const MeasurementTable& table,
-                 const DecodingCurveOf<Value>& curve, MeasurementTable& gradient) const;
+                 const DecodingCurveOf<Value>& curve, MeasurementTable& gradient,
+                 Eigen::VectorXd* by_exposure_s = nullptr) const;
 
   Aligned<Value> points;                 ///< (R, stride)
   Aligned<Value> squares, next_squares;  ///< w.r.t. Q_jj and Q_j+1,j+1, through chord j

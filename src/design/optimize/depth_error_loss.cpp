@@ -10,24 +10,29 @@
 namespace tofsmith {
 
 DepthErrorLoss::DepthErrorLoss(const SampledCamera& camera, MeasurementTable table,
-                               DepthErrorKind kind)
+                               MeasurementTimes times, DepthErrorKind kind)
     : camera_(&camera),
       table_(std::move(table)),
+      times_(std::move(times)),
+      dark_variance_e2_per_s_(camera.dark_variance_e2_per_s()),
       circular_(kind == DepthErrorKind::circular),
-      curve_(camera, table_),
+      curve_(camera, table_, times_.exposure_s),
       decoder_(curve_),
       curve_gradient_(curve_),
-      reading_gradient_(zeros_like(table_)) {
+      reading_gradient_(zeros_like(table_)),
+      by_exposure_s_(Eigen::VectorXd::Zero(table_.measurements())) {
   const auto measurements = static_cast<std::size_t>(table_.measurements());
   reading_.electrons.resize(measurements);
   reading_.deviation_e.resize(measurements);
+  reading_.light_e_per_s.resize(measurements);
+  reading_.shot_light_e_per_s.resize(measurements);
   by_electrons_.resize(measurements);
 }
 
 double DepthErrorLoss::mean_variance_e2(const OperatingPoint& point) const {
   const Eigen::VectorXd light = point.signal_e_per_s * table_.shot().colwise().mean().transpose() +
                                 point.ambient_e_per_s * table_.shot_ambient();
-  return (camera_->exposure_s().cwiseProduct(light) + camera_->constant_variance_e2()).mean();
+  return (times_.exposure_s.cwiseProduct(light) + times_.constant_variance_e2).mean();
 }
 
 DepthErrorLoss::Place DepthErrorLoss::place_at(double depth_periods, double signal_e_per_s) const {
@@ -48,7 +53,7 @@ void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, 
   const Eigen::MatrixXd& shot = table_.shot();
   const Eigen::VectorXd& shot_ambient = table_.shot_ambient();
   for (int i = 0; i < table_.measurements(); ++i) {
-    const double time_s = camera_->exposure_s()[i];
+    const double time_s = times_.exposure_s[i];
     double light = point.ambient_e_per_s * table_.ambient_gain[i];
     double shot_light = point.ambient_e_per_s * shot_ambient[i];
     for (const Place& place : reading_.places) {
@@ -56,8 +61,10 @@ void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, 
       shot_light += place.signal_e_per_s * place.between(shot, i);
     }
     const double deviation =
-        std::sqrt(std::max(1e-6, time_s * shot_light + camera_->constant_variance_e2()[i]));
+        std::sqrt(std::max(1e-6, time_s * shot_light + times_.constant_variance_e2[i]));
     const auto k = static_cast<std::size_t>(i);
+    reading_.light_e_per_s[k] = light;
+    reading_.shot_light_e_per_s[k] = shot_light;
     reading_.deviation_e[k] = deviation;
     reading_.electrons[k] = static_cast<float>(time_s * light + deviation * normals[i]);
   }
@@ -72,8 +79,12 @@ void DepthErrorLoss::pull_back_reading(const OperatingPoint& point, const double
       apart ? reading_gradient_.shot_ambient_gain : reading_gradient_.ambient_gain;
   for (int i = 0; i < table_.measurements(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double by_mean = weight * by_electrons_[k] * camera_->exposure_s()[i];
+    const double by_mean = weight * by_electrons_[k] * times_.exposure_s[i];
     const double by_variance = by_mean * normals[i] / (2.0 * reading_.deviation_e[k]);
+    by_exposure_s_[i] +=
+        (by_mean * reading_.light_e_per_s[k] +
+         by_variance * (reading_.shot_light_e_per_s[k] + dark_variance_e2_per_s_[i])) /
+        times_.exposure_s[i];
     reading_gradient_.ambient_gain[i] += by_mean * point.ambient_e_per_s;
     by_shot_ambient[i] += by_variance * point.ambient_e_per_s;
     for (const Place& place : reading_.places) {
@@ -142,11 +153,12 @@ void DepthErrorLoss::decode(const OperatingPoint& point, const TrialBatch& batch
   }
 }
 
-MeasurementTable DepthErrorLoss::gradient() const {
+MeasurementTable DepthErrorLoss::gradient(Eigen::VectorXd* by_exposure_s) const {
   MeasurementTable result = reading_gradient_;
   CurveGradient by_curve = curve_gradient_;
   if (two_returns_) two_returns_->pull_back(by_curve);
-  by_curve.pull_back(*camera_, table_, curve_, result);
+  by_curve.pull_back(*camera_, table_, curve_, result, by_exposure_s);
+  if (by_exposure_s) *by_exposure_s += by_exposure_s_;
   return result;
 }
 

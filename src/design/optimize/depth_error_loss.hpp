@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "design/optimize/soft_decoder.hpp"
@@ -19,7 +20,10 @@ namespace tofsmith {
 /// of two, depending on the batch. chi is linear between bins.
 class DepthErrorLoss {
  public:
-  DepthErrorLoss(const SampledCamera& camera, MeasurementTable table, DepthErrorKind kind);
+  DepthErrorLoss(const SampledCamera& camera, MeasurementTable table, DepthErrorKind kind)
+      : DepthErrorLoss(camera, std::move(table), camera.times(), kind) {}
+  DepthErrorLoss(const SampledCamera& camera, MeasurementTable table, MeasurementTimes times,
+                 DepthErrorKind kind);
 
   double mean_variance_e2(const OperatingPoint& point) const;
 
@@ -33,7 +37,9 @@ class DepthErrorLoss {
   void decode(const OperatingPoint& point, const TrialBatch& batch,
               std::vector<double>& decoded_bin);
 
-  MeasurementTable gradient() const;
+  /// Returns the accumulated gradient; also adds to the one w.r.t. the integration times (R),
+  /// unless null.
+  MeasurementTable gradient(Eigen::VectorXd* by_exposure_s = nullptr) const;
 
  private:
   struct Place {
@@ -49,6 +55,7 @@ class DepthErrorLoss {
     std::vector<Place> places;
     std::vector<float> electrons;
     std::vector<double> deviation_e;
+    std::vector<double> light_e_per_s, shot_light_e_per_s;
   };
   Place place_at(double depth_periods, double signal_e_per_s) const;
   void read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial);
@@ -60,12 +67,15 @@ class DepthErrorLoss {
 
   const SampledCamera* camera_;
   MeasurementTable table_;
+  MeasurementTimes times_;
+  Eigen::VectorXd dark_variance_e2_per_s_;
   bool circular_;
   DecodingCurve curve_;
   SoftDecoder decoder_;
   std::optional<SoftTwoReturnDecoder> two_returns_;
   CurveGradient curve_gradient_;
   MeasurementTable reading_gradient_;
+  Eigen::VectorXd by_exposure_s_;
   Reading reading_;
   std::vector<float> by_electrons_;
 };

@@ -3,7 +3,9 @@
 #include "design/optimize/edge_polish.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "design/exposure_shares.hpp"
 #include "design/optimize/optimize_pool.hpp"
 #include "design/optimize/stochastic_gradient.hpp"
 #include "tofsmith/core/units.hpp"
@@ -103,6 +105,27 @@ void step_edges(SwitchedLabels& labels, const std::vector<double>& gradient, dou
   if (!good) labels = unmoved;
 }
 
+constexpr double decision_sharpness = 3.0;
+// Stream key that differs from all step numbers.
+constexpr std::uint32_t noise_in_store = 0xffffffffu;
+
+/// Steps of the logits of exposure shares.
+class ShareSteps {
+ public:
+  explicit ShareSteps(const Eigen::VectorXd& shares) : logits_(logits_of_shares(shares)) {}
+
+  Eigen::VectorXd step(const Eigen::VectorXd& by_shares, double done) {
+    constexpr double first_rate = 0.03, last_rate = 0.001;
+    adam_.step(logits_, pull_back_shares(shares_of_logits(logits_), by_shares),
+               first_rate + done * (last_rate - first_rate));
+    return shares_of_logits(logits_);
+  }
+
+ private:
+  Eigen::MatrixXd logits_;
+  Adam adam_;
+};
+
 }  // namespace
 
 EdgeGradient pull_back_to_edges(const WaveformSpace& space, const SwitchedCode& code,
@@ -128,10 +151,13 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
   constexpr double first_rate = 0.15;  // cells per step
   const WaveformSpace& space = problem.space;
   const double shortest = std::max(min_run, problem.shortest_run_periods);
-  if (space.equal_duties && code.light.empty()) return code;
-  constexpr double decision_sharpness = 3.0;
-  StochasticGradient gradient(problem, trials_per_step, RandomStream(seed, work_item, 0xffffffffu));
+  Eigen::VectorXd& shares = code.sampled.shares;
+  if (space.equal_duties && code.light.empty() && shares.size() == 0) return code;
+  StochasticGradient gradient(problem, trials_per_step,
+                              RandomStream(seed, work_item, noise_in_store));
   std::vector<Adam> light(code.light.size()), gates(code.gates.size());
+  std::optional<ShareSteps> share_steps;
+  if (shares.size() > 0) share_steps.emplace(shares);
   for (int step = 0; step < steps; ++step) {
     if (progress) progress->add();
     const double done = static_cast<double>(step) / steps;
@@ -139,6 +165,7 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
     const SampledCode by_samples = gradient.at(sampled_on(space, code), decision_sharpness, random);
     const EdgeGradient by_edges = pull_back_to_edges(space, code, by_samples);
     const double rate = first_rate / space.cells * std::max(0.03, 1.0 - done);
+    if (share_steps) shares = share_steps->step(by_samples.shares, done);
     for (std::size_t e = 0; e < light.size(); ++e)
       step_edges(code.light[e], by_edges[0][e], rate, shortest, space.peak_factor, light[e]);
     if (space.equal_duties) continue;
@@ -146,6 +173,21 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
       step_edges(code.gates[e], by_edges[1][e], rate, shortest, 0.0, gates[e]);
   }
   return code;
+}
+
+Eigen::VectorXd descend_shares(const DesignProblem& problem, SampledCode code, int steps,
+                               int trials_per_step, std::uint64_t seed, std::uint64_t work_item) {
+  StochasticGradient gradient(problem, trials_per_step,
+                              RandomStream(seed, work_item, noise_in_store));
+  ShareSteps share_steps(code.shares);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(code.shares.size());
+  for (int step = 0; step < steps; ++step) {
+    RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
+    const SampledCode by = gradient.at(code, decision_sharpness, random);
+    code.shares = share_steps.step(by.shares, static_cast<double>(step) / steps);
+    if (2 * step >= steps) sum += code.shares;
+  }
+  return sum / sum.sum();
 }
 
 }  // namespace tofsmith

@@ -18,6 +18,7 @@
 #include "design/optimize/optimize_pool.hpp"
 #include "design/optimize/optimize_starts.hpp"
 #include "design/optimize/optimized_code.hpp"
+#include "design/optimize/split_search.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -27,7 +28,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::uint64_t polish_key = 103, judging_key = 104;
+constexpr std::uint64_t polish_key = 103, judging_key = 104, split_key = 105;
 
 bool separates_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
@@ -95,22 +96,26 @@ struct FinishedCode {
   std::string start;
 };
 
-/// @param before  number of codes from earlier stages, for random numbers
-std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
-                                         OptimizePool& pool, const Camera& camera,
-                                         const OptimizeOptions& options, const PoolStage& stage,
-                                         std::uint64_t before, const Progress& progress) {
+Sharpness final_sharpness(const DesignProblem& problem) {
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
-  const std::vector<PoolEntry> entries = entries_to_finish(problem, pool, camera, stage, sharpness);
+  return sharpness;
+}
+
+/// @param key     of the random numbers
+/// @param before  number of codes from earlier stages, for random numbers
+std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
+                                         const std::vector<PoolEntry>& entries, OptimizePool& pool,
+                                         const OptimizeOptions& options, std::uint64_t key,
+                                         std::uint64_t before, const Progress& progress) {
+  const Sharpness sharpness = final_sharpness(problem);
   const int polish_steps = options.polish ? options.polish_steps : 0;
   std::vector<FinishedCode> finished(entries.size());
   SharedProgress shared(progress, static_cast<double>(entries.size()) * polish_steps, "edges");
   parallel_for(std::ssize(entries), [&](std::int64_t i) {
     const PoolEntry& entry = entries[static_cast<std::size_t>(i)];
-    const std::uint64_t work_item =
-        combine_keys(polish_key, before + static_cast<std::uint64_t>(i));
+    const std::uint64_t work_item = combine_keys(key, before + static_cast<std::uint64_t>(i));
     FinishedCode& its = finished[static_cast<std::size_t>(i)];
     its.code = polish_edges(
         problem, binarized(problem, render(problem.space, entry.parameters, sharpness)),
@@ -137,10 +142,12 @@ std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool&
   for (const FinishedCode& its : finished) {
     pool.record(its.log_error_bin);
     const CodeSet code = code_set(optimized_name(space.exposures), space, its.code, camera.samples);
+    const bool has_shares = !code.exposure_shares().empty();
     Candidate candidate{.code = signed_by(code, "optimize", camera, options.seed),
                         .method = "optimize"};
     candidate.message = fmt::format(
-        "gradient descent from {}{}{}", its.start, options.polish ? ", with refined edges" : "",
+        "gradient descent from {}{}{}{}", its.start, has_shares ? ", with exposure times" : "",
+        options.polish ? ", with refined edges" : "",
         pool.ended_early() ? "; stopped early without further gain" : "");
     candidate.per_measurement = reports_of(candidate.code, its.start);
     candidates.push_back(std::move(candidate));
@@ -154,9 +161,11 @@ void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"
 
 namespace {
 
+enum class ExposureTimes { as_in_camera, free };
+
 std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposures,
                                     const OptimizeOptions& options, std::span<const CodeSet> also,
-                                    const Progress& progress) {
+                                    ExposureTimes times, const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
@@ -171,18 +180,33 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   for (const PoolStage& stage : stages) weights.push_back(stage.starts);
   const ProgressParts of_stages(progress, weights);
   std::vector<Candidate> candidates;
-  std::uint64_t finished_before = 0;
+  std::uint64_t finished_before = 0, split_before = 0;
+  const double splitting = times == ExposureTimes::free ? 40.0 : 0.0;
   for (std::size_t s = 0; s < stages.size(); ++s) {
-    const ProgressParts parts(of_stages[s], {40, 35, 10, 15});
+    const ProgressParts parts(of_stages[s], {40, 35, 10, 15, 0.6 * splitting, 0.4 * splitting});
     pool.run_starts(stages[s], also, parts[0]);
     pool.run_hops(stages[s], parts[1]);
     pool.refine(stages[s], parts[2]);
-    std::vector<FinishedCode> finished =
-        finished_codes(problem, judge, pool, camera, options, stages[s], finished_before, parts[3]);
+    std::vector<PoolEntry> entries =
+        entries_to_finish(problem, pool, camera, stages[s], final_sharpness(problem));
+    std::vector<FinishedCode> finished = finished_codes(problem, judge, entries, pool, options,
+                                                        polish_key, finished_before, parts[3]);
     finished_before += finished.size();
-    std::vector<Candidate> made =
-        candidates_of(problem, pool, camera, options, std::move(finished));
-    std::move(made.begin(), made.end(), std::back_inserter(candidates));
+    const double least = finished.front().log_error_bin;
+    const auto add = [&](std::vector<FinishedCode> codes) {
+      std::vector<Candidate> made = candidates_of(problem, pool, camera, options, std::move(codes));
+      std::move(made.begin(), made.end(), std::back_inserter(candidates));
+    };
+    add(std::move(finished));
+    if (times != ExposureTimes::free) continue;
+    for (PoolEntry& entry : entries) entry.parameters.shares = Eigen::MatrixXd::Zero(exposures, 1);
+    std::vector<PoolEntry> split = pool.with_free_shares(stages[s], parts[4]);
+    std::move(split.begin(), split.end(), std::back_inserter(entries));
+    finished =
+        finished_codes(problem, judge, entries, pool, options, split_key, split_before, parts[5]);
+    split_before += finished.size();
+    std::erase_if(finished, [&](const FinishedCode& its) { return !(its.log_error_bin < least); });
+    if (!finished.empty()) add(std::move(finished));
   }
 
   const double seconds =
@@ -199,24 +223,24 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
 /// Codes for binary arms also compete and provide one more start.
 std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
                                      const OptimizeOptions& options, std::span<const CodeSet> also,
-                                     const Progress& progress) {
+                                     ExposureTimes times, const Progress& progress) {
   const ProgressParts parts(progress, {50, 50});
   std::vector<Camera> switching(variants.begin(), variants.end());
   for (Camera& camera : switching) camera.light.binary = camera.sensor.binary = true;
-  std::vector<Candidate> switched = search_codes(switching, exposures, options, also, parts[0]);
+  std::vector<Candidate> switched =
+      search_codes(switching, exposures, options, also, times, parts[0]);
   std::vector<CodeSet> starts{switched.front().code.renamed("binary code")};
   starts.insert(starts.end(), also.begin(), also.end());
-  std::vector<Candidate> analog = search_codes(variants, exposures, options, starts, parts[1]);
+  std::vector<Candidate> analog =
+      search_codes(variants, exposures, options, starts, times, parts[1]);
   std::vector<Candidate> candidates = std::move(switched);
   std::move(analog.begin(), analog.end(), std::back_inserter(candidates));
   return candidates;
 }
 
-}  // namespace
-
-std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
-                                const OptimizeOptions& options, std::span<const CodeSet> also,
-                                const Progress& progress) {
+std::vector<Candidate> search(std::span<const Camera> variants, int exposures,
+                              const OptimizeOptions& options, std::span<const CodeSet> also,
+                              ExposureTimes times, const Progress& progress) {
   options.validate();
   require(!variants.empty(), "variants", variants.size(), "must contain at least one camera");
   const Camera& camera = variants.front();
@@ -226,8 +250,8 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
     starts.push_back(code.is_signed() ? code.buckets_of_signed() : code);
   const bool switches = camera.light.binary && camera.sensor.binary;
   std::vector<Candidate> candidates =
-      switches ? search_codes(variants, exposures, options, starts, progress)
-               : search_analog(variants, exposures, options, starts, progress);
+      switches ? search_codes(variants, exposures, options, starts, times, progress)
+               : search_analog(variants, exposures, options, starts, times, progress);
   if (is_signed)
     for (Candidate& c : candidates) {
       c.code = c.code.signed_of_buckets();
@@ -238,6 +262,24 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
     }
   report(progress, 1.0, "done");
   return candidates;
+}
+
+}  // namespace
+
+std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
+                                const OptimizeOptions& options, std::span<const CodeSet> also,
+                                const Progress& progress) {
+  return search(variants, exposures, options, also, ExposureTimes::as_in_camera, progress);
+}
+
+std::vector<Candidate> optimize_with_shares(std::span<const Camera> variants, int exposures,
+                                            const OptimizeOptions& options,
+                                            std::span<const CodeSet> also,
+                                            const Progress& progress) {
+  for (const Camera& camera : variants)
+    require(camera.exposure_s.each_s.empty(), "exposure_s", "a list",
+            "must be the total time to optimize exposure times");
+  return search(variants, exposures, options, also, ExposureTimes::free, progress);
 }
 
 std::vector<Candidate> optimize(const Camera& camera, int exposures, const OptimizeOptions& options,

@@ -20,6 +20,7 @@ Sharpness sharpness_at(const DescentSchedule& schedule, double done) {
 }
 
 constexpr double softness = 1.2;
+constexpr double shares_per_rate = 0.5;  // logits of shares change less than waveforms
 constexpr double noise = 0.3;
 
 int below(int count, RandomStream& random) {
@@ -33,7 +34,7 @@ void rotate_gates(const WaveformSpace& space, int exposure, int cells,
   for (int c = 0; c < space.cells; ++c) gates.row((c + cells) % space.cells) = before.row(c);
 }
 
-enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
+enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts, splitting };
 constexpr std::size_t together = 10;  // descents between sorts of the pool
 constexpr std::size_t hops_together = 5;
 constexpr std::size_t max_pool = 24;
@@ -82,7 +83,7 @@ WaveformParameters descend(const DesignProblem& problem, WaveformParameters para
   const double largest_demodulation = schedule.final_sharpness.demodulation > 1.0 ? 3.0 : 6.0;
   StochasticGradient objective(problem, schedule.trials_per_step,
                                RandomStream(seed, work_item, noise_in_store));
-  Adam modulation, demodulation;
+  Adam modulation, demodulation, shares;
   for (int step = 0; step < schedule.steps; ++step) {
     if (progress) progress->add();
     const double done = static_cast<double>(step) / schedule.steps;
@@ -100,6 +101,8 @@ WaveformParameters descend(const DesignProblem& problem, WaveformParameters para
                     rate / std::sqrt(sharpness.modulation));
     demodulation.step(parameters.demodulation, gradient.demodulation,
                       rate / std::sqrt(sharpness.demodulation));
+    if (parameters.shares.size() > 0)
+      shares.step(parameters.shares, gradient.shares, shares_per_rate * rate);
     parameters.modulation =
         parameters.modulation.cwiseMax(-largest_modulation).cwiseMin(largest_modulation);
     parameters.demodulation =
@@ -264,6 +267,21 @@ void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
     }
   }
   hops_done_ = count;
+}
+
+std::vector<PoolEntry> OptimizePool::with_free_shares(const PoolStage& stage,
+                                                      const Progress& progress) {
+  std::vector<PoolEntry> entries;
+  for (const std::size_t i : best_of_starts(entries_, static_cast<std::size_t>(stage.refined), 2)) {
+    entries.push_back(softened(entries_[i]));
+    entries.back().parameters.shares = Eigen::MatrixXd::Zero(problem_->space.exposures, 1);
+  }
+  SharedProgress shared(progress, static_cast<double>(entries.size()) * options_.steps_per_hop,
+                        "exposure times");
+  descend_all(entries, options_.steps_per_hop, 0.08, Phase::splitting, splits_done_, shared);
+  steps_ += std::ssize(entries) * options_.steps_per_hop;
+  splits_done_ += entries.size();
+  return entries;
 }
 
 void OptimizePool::refine(const PoolStage& stage, const Progress& progress) {

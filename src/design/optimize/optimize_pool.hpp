@@ -87,6 +87,9 @@ class OptimizePool {
   void run_hops(const PoolStage& stage, const Progress& progress);
   /// Descends from softened copies of the best entries; keeps the better of each.
   void refine(const PoolStage& stage, const Progress& progress);
+  /// Descends from softened copies of the best entries, jointly over waveforms and exposure shares,
+  /// from equal shares. The results do not become entries.
+  std::vector<PoolEntry> with_free_shares(const PoolStage& stage, const Progress& progress);
 
   const std::vector<PoolEntry>& entries() const { return entries_; }
   const std::vector<SearchStep>& history() const { return history_; }
@@ -109,7 +112,7 @@ class OptimizePool {
   std::vector<PoolEntry> continued_;  ///< entries after the starts, which the first hops continue
   std::vector<SearchStep> history_;
   std::int64_t steps_ = 0;
-  std::size_t starts_done_ = 0, hops_done_ = 0, refinements_done_ = 0;
+  std::size_t starts_done_ = 0, hops_done_ = 0, refinements_done_ = 0, splits_done_ = 0;
   bool ended_early_ = false;
 };
 

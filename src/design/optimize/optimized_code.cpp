@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "design/judge.hpp"
+#include "design/optimize/split_search.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {
@@ -52,8 +53,11 @@ std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
     if (code.exposures() == exposures) also.push_back(code);
   OptimizeOptions search = options.optimize;
   search.seed = search_seed(options);
+  const std::vector<Camera> variants = variants_of(camera, options);
   std::vector<Candidate> candidates =
-      optimize(variants_of(camera, options), exposures, search, also, progress);
+      options.split_exposures && camera.exposure_s.each_s.empty()
+          ? optimize_with_shares(variants, exposures, search, also, progress)
+          : optimize(variants, exposures, search, also, progress);
   for (Candidate& c : candidates) c.code.provenance.seed = options.seed;
   return candidates;
 }

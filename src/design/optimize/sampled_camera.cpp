@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "camera/shared/ambient_leak.hpp"
@@ -40,6 +42,11 @@ Eigen::VectorXd sensitivities(int exposures, int taps, double mismatch) {
   return sensitivity;
 }
 
+double total_exposure_s(const ExposureTime& exposure) {
+  if (exposure.each_s.empty()) return exposure.total_s;
+  return std::accumulate(exposure.each_s.begin(), exposure.each_s.end(), 0.0);
+}
+
 }  // namespace
 
 bool sees_ambient(const Camera& camera, int exposures) {
@@ -67,7 +74,10 @@ SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures, b
       difference_(camera.sensor.readout == Readout::difference),
       ambient_unknown_(sees_ambient(camera, exposures)),
       squares_(squares),
-      transfer_(grid_transfer(camera, samples) / static_cast<double>(samples)) {
+      transfer_(grid_transfer(camera, samples) / static_cast<double>(samples)),
+      total_s_(total_exposure_s(camera.exposure_s)),
+      dark_e_per_s_(camera.sensor.dark_current_e_per_s),
+      read_variance_e2_(constant_variance_e2_of(camera.sensor)) {
   const int tap_values = exposures * taps_;
   const Eigen::MatrixXd readout = readout_matrix(tap_values, camera.sensor.readout);
   const Eigen::MatrixXd mixing =
@@ -75,16 +85,33 @@ SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures, b
       mixing_matrix(exposures, taps_, camera.sensor);
   combination_ = readout * mixing;
   shot_combination_ = readout.cwiseAbs() * mixing;
-  exposure_s_.resize(measurements());
+  Eigen::VectorXd exposure_s(measurements());
   const int per_exposure = measurements() / exposures;
   for (int i = 0; i < measurements(); ++i)
-    exposure_s_[i] = camera.exposure_s.of(i / per_exposure, exposures);
+    exposure_s[i] = camera.exposure_s.of(i / per_exposure, exposures);
   dark_electrons_ = readout.rowwise().sum().cwiseProduct(
-      (camera.sensor.dark_current_e_per_s * exposure_s_).array().matrix());
-  const Eigen::VectorXd taps_read = readout.cwiseAbs().rowwise().sum();
-  constant_variance_e2_ = taps_read.cwiseProduct(
-      (camera.sensor.dark_current_e_per_s * exposure_s_).array().matrix() +
-      Eigen::VectorXd::Constant(measurements(), constant_variance_e2_of(camera.sensor)));
+      (camera.sensor.dark_current_e_per_s * exposure_s).array().matrix());
+  taps_read_ = readout.cwiseAbs().rowwise().sum();
+  times_ = times_for(std::move(exposure_s));
+}
+
+MeasurementTimes SampledCamera::times_for(Eigen::VectorXd exposure_s) const {
+  MeasurementTimes times;
+  times.constant_variance_e2 =
+      taps_read_.cwiseProduct((dark_e_per_s_ * exposure_s).array().matrix() +
+                              Eigen::VectorXd::Constant(measurements(), read_variance_e2_));
+  times.exposure_s = std::move(exposure_s);
+  return times;
+}
+
+MeasurementTimes SampledCamera::times(const Eigen::VectorXd& shares) const {
+  const int per_exposure = measurements() / exposures_;
+  return times_for(total_s_ * shares.transpose().replicate(per_exposure, 1).reshaped());
+}
+
+Eigen::VectorXd SampledCamera::pull_back_times(const Eigen::VectorXd& by_exposure_s) const {
+  const int per_exposure = measurements() / exposures_;
+  return total_s_ * by_exposure_s.reshaped(per_exposure, exposures_).colwise().sum().transpose();
 }
 
 SampledCamera::Measured SampledCamera::transformed(const SampledCode& code) const {
@@ -105,6 +132,7 @@ SampledCamera::Measured SampledCamera::transformed(const SampledCode& code) cons
 
 SampledCamera::Measured SampledCamera::measure(const SampledCode& code) const {
   Measured measured = transformed(code);
+  measured.times = code.shares.size() > 0 ? times(code.shares) : times_;
   Eigen::MatrixXd correlation(samples(), exposures_ * taps_);
   Eigen::VectorXd signal;
   for (int e = 0; e < exposures_; ++e) {

@@ -16,6 +16,7 @@ namespace tofsmith {
 struct SampledCode {
   Eigen::MatrixXd modulation;    ///< (N, E)
   Eigen::MatrixXd demodulation;  ///< (N, E x taps)
+  Eigen::VectorXd shares = {};   ///< of the integration time (E); empty: the camera's times
 
   int samples() const { return static_cast<int>(modulation.rows()); }
 };
@@ -24,12 +25,19 @@ struct SampledCode {
 /// unknown_ambient_gain() ignores.
 bool sees_ambient(const Camera& camera, int exposures);
 
+/// Integration times of the measurements and the variance that does not depend on light.
+struct MeasurementTimes {
+  Eigen::VectorXd exposure_s;            ///< (R)
+  Eigen::VectorXd constant_variance_e2;  ///< of read noise, quantization and dark current (R)
+};
+
 /// Correlation functions of waveforms on a grid, and gradients w.r.t. the waveforms. Includes band
 /// limits, contrast, mismatch and readout of taps.
 class SampledCamera {
  public:
   struct Measured {
     MeasurementTable table;
+    MeasurementTimes times;
     std::vector<Eigen::VectorXcd> modulation, demodulation;
     std::vector<Eigen::VectorXcd> square;  ///< of squared weights, if needed
     Eigen::MatrixXd weight;                ///< of a mixer (N, E)
@@ -42,9 +50,16 @@ class SampledCamera {
   int samples() const { return transform_.samples(); }
   int measurements() const { return static_cast<int>(combination_.rows()); }
   /// Integration times [s] (R).
-  const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
+  const Eigen::VectorXd& exposure_s() const { return times_.exposure_s; }
   /// Read noise, quantization and dark current [e^2] (R).
-  const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
+  const Eigen::VectorXd& constant_variance_e2() const { return times_.constant_variance_e2; }
+  const MeasurementTimes& times() const { return times_; }
+  /// Times for shares of the total integration time (E).
+  MeasurementTimes times(const Eigen::VectorXd& shares) const;
+  /// Converts a gradient w.r.t. exposure_s (R) to one w.r.t. the shares (E).
+  Eigen::VectorXd pull_back_times(const Eigen::VectorXd& by_exposure_s) const;
+  /// Variance of dark current per second of integration [e^2/s] (R).
+  Eigen::VectorXd dark_variance_e2_per_s() const { return dark_e_per_s_ * taps_read_; }
   /// Electrons of dark current (R).
   const Eigen::VectorXd& dark_electrons() const { return dark_electrons_; }
   /// True if buckets are subtracted; shot noise comes from their sum.
@@ -65,6 +80,7 @@ class SampledCamera {
  private:
   SampledCamera(const Camera& camera, int samples, int exposures, bool squares);
   void measure_squares(const SampledCode& code, Measured& measured) const;
+  MeasurementTimes times_for(Eigen::VectorXd exposure_s) const;
 
   PeriodicTransform transform_;
   int exposures_, taps_;
@@ -73,7 +89,10 @@ class SampledCamera {
   Eigen::VectorXcd transfer_;    // G / N
   Eigen::MatrixXd combination_;  // (R, all taps): contrast, mismatch, readout
   Eigen::MatrixXd shot_combination_;
-  Eigen::VectorXd exposure_s_, constant_variance_e2_, dark_electrons_;
+  double total_s_, dark_e_per_s_, read_variance_e2_;
+  Eigen::VectorXd taps_read_;  // number of taps that contribute to each measurement
+  MeasurementTimes times_;
+  Eigen::VectorXd dark_electrons_;
 };
 
 MeasurementTable zeros_like(const MeasurementTable& table);

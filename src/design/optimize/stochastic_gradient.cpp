@@ -44,11 +44,12 @@ void StochasticGradient::add(std::size_t variant, std::size_t point, double erro
 SampledCode StochasticGradient::at(const SampledCode& code, double decision_sharpness,
                                    RandomStream& random) {
   SampledCode gradient{Eigen::MatrixXd::Zero(code.modulation.rows(), code.modulation.cols()),
-                       Eigen::MatrixXd::Zero(code.demodulation.rows(), code.demodulation.cols())};
+                       Eigen::MatrixXd::Zero(code.demodulation.rows(), code.demodulation.cols()),
+                       Eigen::VectorXd::Zero(code.shares.size())};
   for (std::size_t v = 0; v < problem_->variants.size(); ++v) {
     const CameraVariant& variant = problem_->variants[v];
     const SampledCamera::Measured measured = variant.camera.measure(code);
-    DepthErrorLoss loss(variant.camera, measured.table, problem_->operating.error);
+    DepthErrorLoss loss(variant.camera, measured.table, measured.times, problem_->operating.error);
     const int trials =
         trials_ / static_cast<int>(variant.usual_levels() * problem_->variants.size());
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
@@ -62,9 +63,11 @@ SampledCode StochasticGradient::at(const SampledCode& code, double decision_shar
         add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness)));
       add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness, weight(v, p))));
     }
-    const SampledCode part = variant.camera.pull_back(measured, loss.gradient());
+    Eigen::VectorXd by_exposure_s = Eigen::VectorXd::Zero(variant.camera.measurements());
+    const SampledCode part = variant.camera.pull_back(measured, loss.gradient(&by_exposure_s));
     gradient.modulation += part.modulation;
     gradient.demodulation += part.demodulation;
+    if (code.shares.size() > 0) gradient.shares += variant.camera.pull_back_times(by_exposure_s);
   }
   return gradient;
 }

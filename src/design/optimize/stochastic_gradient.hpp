@@ -8,8 +8,8 @@
 
 namespace tofsmith {
 
-/// Stochastic gradient w.r.t. the waveforms, from new trials in every call. The objective is the
-/// smooth maximum over camera variants of the mean log error over light levels.
+/// Stochastic gradient w.r.t. the waveforms and shares, from new trials in every call. The
+/// objective is the smooth maximum over camera variants of the mean log error over light levels.
 class StochasticGradient {
  public:
   /// @param trials  per call, in total

@@ -78,7 +78,9 @@ CodeSet code_set(const std::string& name, const WaveformSpace& space, const Swit
               ? resampled(code.sampled.demodulation.col(e * space.taps + tap), samples)
               : code.gates[static_cast<std::size_t>(e)].waveform(tap, 1.0));
   }
-  return CodeSet::create(name, samples, space.taps, std::move(modulation), std::move(demodulation));
+  const Eigen::VectorXd& shares = code.sampled.shares;
+  return CodeSet::create(name, samples, space.taps, std::move(modulation), std::move(demodulation))
+      .with_exposure_shares({shares.begin(), shares.end()});
 }
 
 }  // namespace tofsmith

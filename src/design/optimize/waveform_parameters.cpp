@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "design/exposure_shares.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -86,6 +88,7 @@ SampledCode render(const WaveformSpace& space, const WaveformParameters& paramet
                    const Sharpness& sharpness) {
   SampledCode code{Eigen::MatrixXd(space.samples(), space.exposures),
                    Eigen::MatrixXd(space.samples(), space.exposures * space.taps)};
+  if (parameters.shares.size() > 0) code.shares = shares_of_logits(parameters.shares);
   const int columns = space.columns();
   for (int e = 0; e < space.exposures; ++e) {
     code.modulation.col(e) =
@@ -116,6 +119,7 @@ WaveformParameters pull_back(const WaveformSpace& space, const SampledCode& code
   const int columns = space.columns(), taps = space.taps;
   WaveformParameters result{Eigen::MatrixXd(space.cells, space.exposures),
                             Eigen::MatrixXd(space.cells, space.exposures * columns)};
+  if (code.shares.size() > 0) result.shares = pull_back_shares(code.shares, gradient.shares);
   const auto by_cell = [&](const Eigen::VectorXd& samples) {
     return sum_in_cells(samples, space.repeat);
   };

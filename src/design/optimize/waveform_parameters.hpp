@@ -35,9 +35,11 @@ struct Sharpness {
 /// Parameters of waveforms; all values are feasible.
 ///   modulation    m = p s(k (phi - lambda)), s the logistic function, lambda such that mean m = 1
 ///   demodulation  two classes: s(k theta); more: softmax(k theta) over the classes
+///   shares        shares_of_logits()
 struct WaveformParameters {
   Eigen::MatrixXd modulation;    ///< phi (cells, E)
   Eigen::MatrixXd demodulation;  ///< theta (cells, E x columns)
+  Eigen::MatrixXd shares = {};   ///< logits (E, 1); empty: the camera's times
 };
 
 SampledCode render(const WaveformSpace& space, const WaveformParameters& parameters,
