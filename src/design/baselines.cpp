@@ -132,9 +132,10 @@ void leave_out(DesignResult& result, const std::string& name, const std::string&
   result.left_out.push_back(name + ending);
 }
 
-double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options) {
+double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options,
+                     int more) {
   if (why_no_depth(code, camera)) return infinity;
-  const int trials = trials_per_point(camera);
+  const int trials = more * trials_per_point(camera);
   const std::uint64_t seed = search_seed(options);
   if (camera.operating.error == DepthErrorKind::linear)
     return first_error_m(code, camera, trials, seed);

@@ -28,7 +28,9 @@ std::vector<std::string> other_families(const Camera& camera, const DesignOption
 
 /// Returns the error of a code by few trials with the random numbers of searches [m], circular or
 /// linear at the best origin, as selected by the camera; infinite if the code determines no depth.
-double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options);
+/// @param more  times the usual number of trials
+double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options,
+                     int more = 1);
 
 /// Codes that may be the best on a camera, and reasons that exclude others.
 struct Contenders {

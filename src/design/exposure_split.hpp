@@ -6,15 +6,17 @@
 
 namespace tofsmith {
 
-/// Moves integration time between the exposures in steps of 30, 10 and 3 %, and keeps the moves for
-/// which few trials find a smaller error.
-/// @return the code, with exposure_shares() if the error decreased
+/// Chooses exposure shares for the waveforms of a code: the shares with the smallest Cramer-Rao
+/// bound (ExposureBound), shares between these and equal ones, or shares from gradients of the soft
+/// decoder's error, whichever has the smallest error in few trials.
+/// @return the code, with exposure_shares() if new trials confirm a smaller error
 CodeSet with_split_exposures(const CodeSet& code, const Camera& camera,
                              const DesignOptions& options);
 
 /// Adds a copy with exposures of different length for each optimized and factorized code of several
-/// exposures; judge_candidates() keeps the better one of equal names. Does nothing for cameras that
-/// list times.
+/// exposures, and removes codes with exposure shares that are not better, in new trials, than the
+/// best code of the same name with equal shares. The messages of the others contain the gain.
+/// Does nothing for cameras that list times.
 void add_split_exposures(const Camera& camera, const DesignOptions& options, DesignResult& result,
                          const Progress& progress);
 
