@@ -20,11 +20,11 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::uint64_t split_key = 106;
+constexpr std::uint64_t share_descent_key = 106;
 /// Multiples of the usual number of trials of tried_error_m(), because the differences are small.
 constexpr int choosing_trials = 4, confirming_trials = 20;
 /// Smaller gains may be due to chance.
-constexpr double min_gain = 1.001;
+constexpr double min_gain = 1.003;
 
 struct TriedCode {
   CodeSet code;
@@ -50,7 +50,7 @@ std::optional<Eigen::VectorXd> shares_by_soft_error(const CodeSet& code, Camera 
   SampledCode sampled = sampled_on(problem.space, taps);
   sampled.shares = shares_of(code);
   return descend_shares(problem, std::move(sampled), std::max(1, options.optimize.polish_steps),
-                        options.optimize.trials_per_step, options.seed, split_key);
+                        options.optimize.trials_per_step, options.seed, share_descent_key);
 }
 
 /// Returns the best of the proposed shares in few trials.

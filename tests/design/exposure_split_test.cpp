@@ -140,6 +140,18 @@ TEST(SplitSearch, FindsBetterCodesWithSharesForAnyNumberOfThreads) {
   EXPECT_EQ(again.exposure_shares(), split.exposure_shares());
 }
 
+TEST(SplitSearch, NeverMakesADesignWorse) {
+  for (const DesignMethod method : {DesignMethod::optimize, DesignMethod::factorize}) {
+    DesignOptions options = small_options({4});
+    options.method = method;
+    options.optimize = fast_search();
+    const Camera camera = fast_camera();
+    const double equal_m = design(camera, options).winner().code.provenance.depth_error_m;
+    options.split_exposures = true;
+    EXPECT_LE(design(camera, options).winner().code.provenance.depth_error_m, equal_m);
+  }
+}
+
 TEST(SplitSearch, RejectsCamerasThatListTimes) {
   Camera camera = fast_camera();
   camera.exposure_s.each_s = {0.1, 0.1, 0.1, 0.1};

@@ -107,22 +107,24 @@ void step_edges(SwitchedLabels& labels, const std::vector<double>& gradient, dou
 
 constexpr double decision_sharpness = 3.0;
 // Stream key that differs from all step numbers.
-constexpr std::uint32_t noise_in_store = 0xffffffffu;
+constexpr std::uint32_t noise_store_key = 0xffffffffu;
 
 /// Steps of the logits of exposure shares.
 class ShareSteps {
  public:
-  explicit ShareSteps(const Eigen::VectorXd& shares) : logits_(logits_of_shares(shares)) {}
+  ShareSteps(const Eigen::VectorXd& shares, double first_rate)
+      : logits_(logits_of_shares(shares)), first_rate_(first_rate) {}
 
   Eigen::VectorXd step(const Eigen::VectorXd& by_shares, double done) {
-    constexpr double first_rate = 0.03, last_rate = 0.001;
+    constexpr double least = 0.03;  // of the first rate
     adam_.step(logits_, pull_back_shares(shares_of_logits(logits_), by_shares),
-               first_rate + done * (last_rate - first_rate));
+               first_rate_ * std::max(least, 1.0 - done));
     return shares_of_logits(logits_);
   }
 
  private:
   Eigen::MatrixXd logits_;
+  double first_rate_;
   Adam adam_;
 };
 
@@ -154,10 +156,10 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
   Eigen::VectorXd& shares = code.sampled.shares;
   if (space.equal_duties && code.light.empty() && shares.size() == 0) return code;
   StochasticGradient gradient(problem, trials_per_step,
-                              RandomStream(seed, work_item, noise_in_store));
+                              RandomStream(seed, work_item, noise_store_key));
   std::vector<Adam> light(code.light.size()), gates(code.gates.size());
   std::optional<ShareSteps> share_steps;
-  if (shares.size() > 0) share_steps.emplace(shares);
+  if (shares.size() > 0) share_steps.emplace(shares, 0.03);
   for (int step = 0; step < steps; ++step) {
     if (progress) progress->add();
     const double done = static_cast<double>(step) / steps;
@@ -178,8 +180,8 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
 Eigen::VectorXd descend_shares(const DesignProblem& problem, SampledCode code, int steps,
                                int trials_per_step, std::uint64_t seed, std::uint64_t work_item) {
   StochasticGradient gradient(problem, trials_per_step,
-                              RandomStream(seed, work_item, noise_in_store));
-  ShareSteps share_steps(code.shares);
+                              RandomStream(seed, work_item, noise_store_key));
+  ShareSteps share_steps(code.shares, 0.1);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(code.shares.size());
   for (int step = 0; step < steps; ++step) {
     RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
