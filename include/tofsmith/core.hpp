@@ -58,4 +58,5 @@
 #include "tofsmith/simulate/robustness.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"
+#include "tofsmith/simulate/wrong_shares.hpp"
 #include "tofsmith/version.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
@@ -12,6 +11,7 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/wrong_shares.hpp"
 
 namespace tofsmith {
 
@@ -44,24 +44,6 @@ class MotionBias {
   Eigen::VectorXd mean_share_;    // mean of c
   Eigen::MatrixXd mean_product_;  // mean of c c^T
 };
-
-/// Shares of trials whose exposures saw different depths. A depth is wrong if it deviates from all
-/// true depths by more than three times its `deviation_m`.
-struct WrongShares {
-  double wrong = 0.0;
-  double wrong_ok = 0.0;            ///< wrong, but with status ok
-  double wrong_inconsistent = 0.0;  ///< wrong, with status inconsistent
-  double inconsistent = 0.0;        ///< status inconsistent
-
-  /// Share of the wrong depths that are inconsistent; none without wrong depths.
-  std::optional<double> detected() const;
-};
-auto fields_of(ConstOrNot<WrongShares> auto& s) {
-  return std::tuple(Field("wrong", s.wrong, closed(0, 1)),
-                    Field("wrong_ok", s.wrong_ok, closed(0, 1)),
-                    Field("wrong_inconsistent", s.wrong_inconsistent, closed(0, 1)),
-                    Field("inconsistent", s.inconsistent, closed(0, 1)));
-}
 
 /// Errors at one operating point.
 struct MotionPoint {
