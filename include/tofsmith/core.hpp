@@ -53,6 +53,7 @@
 #include "tofsmith/simulate/capture.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/depth_error_text.hpp"
+#include "tofsmith/simulate/interference_error.hpp"
 #include "tofsmith/simulate/motion_error.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"

@@ -105,12 +105,14 @@ void validate_depths(const OperatingRange& range, double range_m) {
           "weights that are all 0", "must have one > 0");
 }
 
-void validate_operating(const OperatingRange& range, double range_m) {
+void validate_operating(const OperatingRange& range, double range_m,
+                        double fundamental_frequency_hz) {
   require(!range.signal_e_per_s.empty(), "operating.signal_e_per_s", "[]",
           "must list at least one level");
   require(!range.ambient_e_per_s.empty(), "operating.ambient_e_per_s", "[]",
           "must list at least one level");
   if (range.multipath) range.multipath->validate(range_m);
+  if (range.interference) range.interference->validate(fundamental_frequency_hz);
   validate_depths(range, range_m);
 }
 
@@ -146,6 +148,18 @@ void OperatingMultipath::validate(double range_m) const {
           fmt::format("must be [shortest, longest] with shortest <= longest and below the "
                       "unambiguous range, {:.4g} m",
                       range_m));
+}
+
+void OperatingInterference::validate(double fundamental_frequency_hz) const {
+  check_ranges(*this, "operating.interference.");
+  require(code == "same" || is_family(code), "operating.interference.code", code,
+          "must be \"same\" or the name of a family such as sinusoid-k4");
+  constexpr double min_frequency_hz = 1e3;
+  require(fundamental_frequency_hz + frequency_offset_hz >= min_frequency_hz,
+          "operating.interference.frequency_offset_hz", frequency_offset_hz,
+          fmt::format("must be >= {:.6g} Hz, so that the fundamental frequency of the other "
+                      "cameras is at least 1 kHz",
+                      min_frequency_hz - fundamental_frequency_hz));
 }
 
 std::vector<OperatingPoint> OperatingRange::points() const {
@@ -274,7 +288,7 @@ void Camera::validate() const {
   }
   if (blur) blur->validate();
   if (optics) optics->validate();
-  validate_operating(operating, range_m());
+  validate_operating(operating, range_m(), fundamental_frequency_hz);
   if (playback) playback->validate(sensor.taps);
   if (temperature) temperature->validate();
   if (sensor.readout != Readout::rows) return;

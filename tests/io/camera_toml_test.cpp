@@ -110,6 +110,8 @@ Camera every_field_set() {
   camera.operating.working_distance_m = {0.5, 4.0};
   camera.operating.depths = {0.0, 2.5, 1.0};
   camera.operating.multipath = OperatingMultipath{{0.0, 1.0}, {0.25, 1.0 / 3}, 0.125};
+  camera.operating.interference =
+      OperatingInterference{3, 1.0 / 3, "sinusoid-k4", -1e3, Spreading::signs, 7};
   return camera;
 }
 
@@ -278,6 +280,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "with shortest <= longest and below the unambiguous range, 7.495 m"}));
 
 INSTANTIATE_TEST_SUITE_P(
+    OperatingInterference, CameraTomlRefuses,
+    testing::Values(BadLine{
+        "[operating.interference]\ncode = \"other\"",
+        "c.toml:3:8: operating.interference.code = other; must be \"same\" or the name of "
+        "a family such as sinusoid-k4"}));
+
+INSTANTIATE_TEST_SUITE_P(
     OperatingDepths, CameraTomlRefuses,
     testing::Values(
         BadLine{"operating.depths = []",
@@ -444,6 +453,7 @@ TEST(CalibratedCamera, IsReadBackWithItsOptionalTables) {
   EXPECT_EQ(parse_camera_toml(calibrated_camera_toml(camera)), camera);
   camera.light.generator.emplace();
   camera.operating.multipath.emplace();
+  camera.operating.interference.emplace();
   camera.playback.emplace();
   camera.temperature.emplace().sensor.emplace();
   EXPECT_EQ(parse_camera_toml(calibrated_camera_toml(camera)), camera);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -89,6 +90,60 @@ inline void describe(FieldVisitor& fields, OperatingMultipath& multipath) {
       multipath.weight);
 }
 
+/// Changes of light and demodulation from part to part of an exposure, against other cameras.
+enum class Spreading {
+  none,
+  phases,  ///< independent delays, uniform over the period
+  signs,   ///< independent delays of 0 or half a period, as in pseudo-noise modulation
+};
+inline constexpr std::array<std::string_view, 3> spreadings = {"none", "phases", "signs"};
+
+/// Other cameras that light the same surfaces. They are not synchronized: the phase of each is
+/// random in every frame, as is the exposure with which its frame begins.
+struct OperatingInterference {
+  int cameras = 1;            ///< with independent phases
+  double signal_ratio = 0.1;  ///< light of each, divided by the signal
+  std::string code = "same";  ///< family of their modulation
+  double frequency_offset_hz = 0.0;
+  Spreading spreading = Spreading::none;
+  int parts = 16;  ///< of each exposure
+
+  bool spreads() const { return spreading != Spreading::none; }
+
+  /// @throws InvalidArgument
+  void validate(double fundamental_frequency_hz) const;
+
+  friend bool operator==(const OperatingInterference&, const OperatingInterference&) = default;
+};
+
+/// Keys of [operating.interference].
+inline void describe(FieldVisitor& fields, OperatingInterference& interference) {
+  fields.value(
+      Key("cameras", "Number of other cameras that light the same surfaces", closed(1, 1000)),
+      interference.cameras);
+  fields.value(Key("signal_ratio",
+                   "Light of each other camera that the surface reflects, divided by the signal",
+                   left_open(0, 100)),
+               interference.signal_ratio);
+  fields.value(Key("code",
+                   "Modulation of the other cameras: \"same\" as this camera, or the name of a "
+                   "family"),
+               interference.code);
+  fields.value(Key("frequency_offset_hz",
+                   "Fundamental frequency of the other cameras minus the one of this camera",
+                   closed(-1e9, 1e9)),
+               interference.frequency_offset_hz);
+  fields.choice(Key("spreading",
+                    "Change of this camera's light and demodulation between the parts of an "
+                    "exposure: random phases, or random signs as in pseudo-noise modulation"),
+                interference.spreading, spreadings);
+  fields.value(
+      Key("parts", "Number of equal parts of each exposure with independent phases or signs",
+          closed(1, 4096))
+          .only(interference.spreads(), "spreading = \"phases\" or \"signs\""),
+      interference.parts);
+}
+
 /// Conditions under which codes are evaluated: every pair of signal and ambient light.
 struct OperatingRange {
   std::vector<double> signal_e_per_s;   ///< S
@@ -101,6 +156,8 @@ struct OperatingRange {
   int neighbours = 1;
   /// Absent: single returns.
   std::optional<OperatingMultipath> multipath = {};
+  /// Absent: no other cameras.
+  std::optional<OperatingInterference> interference = {};
   std::optional<std::array<double, 2>> working_distance_m = {};
   std::optional<std::vector<double>> depths = {};
   /// Velocity of surfaces along the ray [m/s], positive: away from the camera. Designs choose the
@@ -165,6 +222,9 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                    closed(-1000, 1000)),
                range.velocity_m_per_s);
   fields.table(Key("multipath", "Multipath that designs take into account"), range.multipath);
+  fields.table(Key("interference",
+                   "Other cameras that light the same surfaces; designs take them into account"),
+               range.interference);
 }
 
 /// Conditions of the paper: linear error, S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5} and A in {1e2, 1e3,
