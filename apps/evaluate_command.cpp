@@ -180,6 +180,14 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
         "with status ok",
         *camera.operating.velocity_m_per_s));
   }
+  if (is_evaluated_with_interference(codes)) {
+    session.say(text_table(interference_rows(codes, every_level)));
+    session.say(fmt::format(
+        "interference of {}; interference: rms error without noise, first order; expected rms: "
+        "with noise; alone: without other cameras; wrong: more than 3 deviations; detected: share "
+        "of wrong depths with status inconsistent",
+        interference_text(*camera.operating.interference)));
+  }
   session.say(
       fmt::format("{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is "
                   "one standard error; factors in parentheses are circular error / bound",
@@ -206,8 +214,9 @@ void check_output(const std::filesystem::path& path, const Session& session) {
   session.check_output(path);
 }
 
-/// Evaluates each code, at its best origin if requested, and with moving surfaces if the camera has
-/// a velocity. Maximum likelihood is compared with zncc on the same depths and noise.
+/// Evaluates each code, at its best origin if requested, and with moving surfaces or other cameras
+/// if the camera describes them. Maximum likelihood is compared with zncc on the same depths and
+/// noise.
 std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camera& camera,
                                         const EvaluateArguments& arguments) {
   std::vector<EvaluatedCode> evaluated;
@@ -215,9 +224,10 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
   const bool is_compared = arguments.options.method == DecodeMethod::ml;
   const auto& velocity_m_per_s = camera.operating.velocity_m_per_s;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    const ProgressParts of_code(parts[i],
-                                {arguments.best_rotation ? 50.0 : 0.0, is_compared ? 40.0 : 50.0,
-                                 is_compared ? 10.0 : 0.0, velocity_m_per_s ? 20.0 : 0.0});
+    const ProgressParts of_code(
+        parts[i],
+        {arguments.best_rotation ? 50.0 : 0.0, is_compared ? 40.0 : 50.0, is_compared ? 10.0 : 0.0,
+         velocity_m_per_s ? 20.0 : 0.0, camera.operating.interference ? 20.0 : 0.0});
     int rotation = 0;
     if (arguments.best_rotation) {
       rotation = best_rotation(codes[i], camera, arguments.options, of_code[0]).rotation_bin;
@@ -233,6 +243,8 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
     if (velocity_m_per_s)
       code.motion =
           motion_error(codes[i], camera, *velocity_m_per_s, arguments.options, of_code[3]);
+    if (camera.operating.interference)
+      code.interference = interference_error(codes[i], camera, arguments.options, of_code[4]);
     evaluated.push_back(std::move(code));
   }
   return evaluated;
@@ -308,6 +320,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->required();
   arguments->camera.add_to(*command);
   arguments->camera.add_key_option(*command, "operating.velocity_m_per_s", "--velocity");
+  arguments->camera.add_key_option(*command, "operating.interference.cameras", "--interference");
   const FieldOptions options(*command, arguments->options);
   options.add("trials", "--trials");
   options.add("target_standard_error", "--target-standard-error")

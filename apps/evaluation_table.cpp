@@ -83,11 +83,16 @@ std::vector<std::vector<std::string>> evaluation_rows(const std::vector<Evaluate
 
 std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
   const bool compared = is_compared_with_zncc(codes);
+  const bool has_others = is_evaluated_with_interference(codes);
   std::string text = fmt::format(
       "code,signal_e_per_s,ambient_e_per_s,linear_mde_m,linear_se_m,circular_mde_m,circular_se_m,"
       "linear_rmse_m,linear_rmse_se_m,circular_rmse_m,circular_rmse_se_m,outlier_rate,"
-      "cramer_rao_mae_m,receiver_bound_mae_m,direct_tof_bound_mae_m{}\n",
-      compared ? ",zncc_linear_mde_m,zncc_circular_mde_m" : "");
+      "cramer_rao_mae_m,receiver_bound_mae_m,direct_tof_bound_mae_m{}{}\n",
+      compared ? ",zncc_linear_mde_m,zncc_circular_mde_m" : "",
+      has_others ? ",interference_rms_m,interference_expected_rmse_m,interference_circular_mde_m,"
+                   "interference_circular_rmse_m,interference_wrong,interference_wrong_ok,"
+                   "interference_wrong_inconsistent"
+                 : "");
   for (const EvaluatedCode& code : codes)
     for (std::size_t i = 0; i < code.error.points.size(); ++i) {
       const PointDepthError& p = code.error.points[i];
@@ -103,6 +108,13 @@ std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
       if (compared)
         text += fmt::format(",{:.9g},{:.9g}", code.zncc_error->points[i].linear_mde_m.value,
                             code.zncc_error->points[i].circular_mde_m.value);
+      if (has_others) {
+        const InterferencePoint& lit = code.interference->points[i];
+        text += fmt::format(",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}",
+                            code.interference->rms_m, lit.expected_rmse_m, lit.circular_mde_m.value,
+                            lit.circular_rmse_m.value, lit.shares.wrong, lit.shares.wrong_ok,
+                            lit.shares.wrong_inconsistent);
+      }
       text += "\n";
     }
   return text;

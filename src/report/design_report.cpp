@@ -160,6 +160,7 @@ Table explanation(const DesignResult& result, DepthErrorKind kind) {
   if (!result.winner().code.is_rows()) questions.push_back("Why this number of exposures?");
   questions.push_back("What limits its error?");
   if (result.winner().multipath) questions.push_back("How does it perform with multipath?");
+  if (result.winner().interference) questions.push_back("How does it perform with other cameras?");
   if (result.winner().code.is_rows()) questions.push_back("How does it perform in dimmer light?");
   Table table{.columns = {{"question"}, {"answer"}}};
   if (kind == DepthErrorKind::linear)
@@ -320,6 +321,8 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   if (const auto judged = judged_codes(evaluated); !judged.empty())
     page.sections.push_back(robustness_section(judged));
   if (is_evaluated_with_motion(evaluated)) page.sections.push_back(motion_section(evaluated));
+  if (is_evaluated_with_interference(evaluated))
+    page.sections.push_back(interference_section(evaluated, *camera.operating.interference));
   page.sections.push_back(camera_section(camera));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;

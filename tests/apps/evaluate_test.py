@@ -114,6 +114,30 @@ class Evaluate(CommandLineTest):
                     "its unit such as 2m/s", code=2)
         self.refuse((*bright, "--velocity", "1e9"), "must be in [-1000, 1000]", code=2)
 
+    def test_other_cameras_are_reported_for_their_number(self):
+        bright = ("evaluate", "sinusoid-k4", "multifrequency-k5", *FAST, "--set",
+                  "operating.signal_e_per_s=[1e6]", "--set", "operating.ambient_e_per_s=[1e3]")
+        alone, lit = self.do_json(*bright), self.do_json(*bright, "--interference", "2")
+        self.assertEqual(lit, self.do_json(*bright, "--set", "operating.interference.cameras=2"))
+        self.assertEqual(lit["camera"]["operating"].pop("interference")["cameras"], 2)
+        found = [code.pop("interference") for code in lit["codes"]]
+        self.assertEqual(lit, alone)
+        for code, interference in zip(lit["codes"], found):
+            self.assertGreater(interference["rms_m"], 0.02)
+            self.assertEqual(len(interference["points"]), 1)
+            self.assertGreater(interference["circular"]["geometric_mean_m"],
+                               code["circular"]["geometric_mean_m"])
+        spread = self.do_json(*bright, "--interference", "2", "--set",
+                              'operating.interference.spreading="phases"')
+        for code, interference in zip(spread["codes"], found):
+            self.assertLess(code["interference"]["rms_m"], 0.3 * interference["rms_m"])
+        text = self.do(*bright, "--interference", "2", "-o", "e.html")
+        self.assertIn("interference of 2 other cameras, each with 0.1 times the signal", text)
+        self.assertIn(f"{1e3 * found[0]['rms_m']:.3f}", text)
+        self.assertIn(b"Depth error with the light of 2 other cameras", self.bytes_of("e.html"))
+        self.do(*bright, "--interference", "2", "-o", "e.csv")
+        self.assertIn(b"interference_circular_mde_m", self.bytes_of("e.csv").splitlines()[0])
+
 
 if __name__ == "__main__":
     unittest.main()

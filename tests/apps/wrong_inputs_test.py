@@ -146,6 +146,13 @@ evaluate sinusoid-k4 --error 5 | unknown option '--error'
 evaluate hamiltonian-k20 | hamiltonian-k20; [3, 10]
 evaluate multifrequency-0x4 | multifrequency-0x4
 evaluate sinusoid-k4 -o e.xls | expected .csv
+evaluate sinusoid-k4 --interference 0 | --interference; found 0; [1, 1000]
+evaluate sinusoid-k4 --set operating.interference.camera=2 | did you mean operating.interference.cameras?
+evaluate sinusoid-k4 --set operating.interference.signal_ratio=0 | operating.interference.signal_ratio; (0, 100]
+evaluate sinusoid-k4 --set 'operating.interference.code="other"' | operating.interference.code; "same"
+evaluate sinusoid-k4 --set 'operating.interference.spreading="noise"' | operating.interference.spreading; signs
+evaluate sinusoid-k4 --set operating.interference.parts=4 | operating.interference.parts; spreading = "phases"
+evaluate sinusoid-k4 --set operating.interference.frequency_offset_hz=-1e8 | frequency_offset_hz; must be >=
 design --taps 3 | --set sensor.taps
 evaluate sinusoid-k4 --exposure-s 0.01 | --set exposure_s
 evaluat sinusoid-k4 | did you mean evaluate?

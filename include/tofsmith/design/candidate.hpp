@@ -10,6 +10,7 @@
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/design/factorize.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/interference_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {
@@ -88,6 +89,9 @@ struct Candidate {
 
   /// Error in operating.multipath.
   std::optional<OperatingMultipathReport> multipath;
+
+  /// Error with the light of other cameras, if the camera has operating.interference.
+  std::optional<InterferenceReport> interference = {};
 
   /// Order of the exposures of `code`, if the camera has operating.velocity_m_per_s.
   std::optional<ExposureOrder> exposure_order = {};

@@ -10,6 +10,7 @@
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/interference_error.hpp"
 #include "tofsmith/simulate/motion_error.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
@@ -25,6 +26,8 @@ struct EvaluatedCode {
   std::optional<RobustnessReport> robustness;
   /// With moving surfaces, if the camera has operating.velocity_m_per_s.
   std::optional<MotionReport> motion = {};
+  /// With other cameras, if the camera has operating.interference.
+  std::optional<InterferenceReport> interference = {};
 };
 
 /// Returns the generator limits and errors of each waveform as a JSON list.

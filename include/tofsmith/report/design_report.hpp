@@ -70,6 +70,19 @@ std::vector<std::vector<std::string>> motion_rows(std::span<const EvaluatedCode>
 /// As above as a section.
 Section motion_section(std::span<const EvaluatedCode> codes);
 
+/// Returns true if codes were evaluated with the light of other cameras.
+bool is_evaluated_with_interference(std::span<const EvaluatedCode> codes);
+
+/// Rows of the table of errors with other cameras, headings first: every code, as means over the
+/// light levels and optionally at each.
+std::vector<std::vector<std::string>> interference_rows(std::span<const EvaluatedCode> codes,
+                                                        bool every_level);
+/// As above as a section.
+Section interference_section(std::span<const EvaluatedCode> codes,
+                             const OperatingInterference& others);
+/// Describes the other cameras: "2 other cameras, each with 0.1 times the signal, ...".
+std::string interference_text(const OperatingInterference& others);
+
 /// Returns true if codes were also decoded by zncc.
 bool is_compared_with_zncc(std::span<const EvaluatedCode> codes);
 

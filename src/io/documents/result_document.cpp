@@ -160,6 +160,7 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
     }
     if (candidate.robustness) entry["robustness"] = robustness_json(*candidate.robustness);
     if (candidate.multipath) entry["multipath"] = fields_json(*candidate.multipath);
+    if (candidate.interference) entry["interference"] = fields_json(*candidate.interference);
     if (candidate.exposure_order) entry["exposure_order"] = fields_json(*candidate.exposure_order);
     const Estimate gain = gain_over(result, candidate, camera.operating.measure());
     entry["times_best"] = {{"ratio", gain.value}, {"ratio_se", gain.standard_error}};
@@ -195,6 +196,7 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
     if (code.zncc_error) entry["zncc"] = zncc_json(code.error, *code.zncc_error);
     if (code.robustness) entry["robustness"] = robustness_json(*code.robustness);
     if (code.motion) entry["motion"] = fields_json(*code.motion);
+    if (code.interference) entry["interference"] = fields_json(*code.interference);
     document["codes"].push_back(std::move(entry));
   }
   return document.dump(2, ' ', false, Json::error_handler_t::replace);
