@@ -129,6 +129,9 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
     throw UsageError(
         "--robust: found together with multipath (--multipath or [operating.multipath]); expected "
         "one of them");
+  if (camera.operating.interference && options.robust)
+    throw UsageError(
+        "--robust: found together with [operating.interference]; expected one of them");
   if (arguments.effort == 0.0 && !arguments.target.empty())
     throw UsageError("--effort 0 does not design codes: it cannot be combined with --target");
   if (arguments.effort == 0.0 && options.method != DesignMethod::best &&

@@ -34,6 +34,15 @@ void add_motion(std::vector<std::vector<std::string>>& rows, const DesignResult&
     rows[i + 1].push_back(fmt::format("{:.3f}", 1e3 * order[i]->exposure_order->rms_bias_m));
 }
 
+void add_interference(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
+                      DepthErrorMeasure measure) {
+  rows.front().push_back("interference (mm)");
+  const std::vector<const Candidate*> order = by_geometric_mean_error(result, measure);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    rows[i + 1].push_back(
+        estimate_mm_text(order[i]->interference->of(measure.kind).geometric_mean_m));
+}
+
 /// Returns sentences about the winner and its advantage over other codes.
 std::string verdict(const Camera& camera, const DesignResult& result) {
   const DepthErrorMeasure measure = camera.operating.measure();
@@ -51,7 +60,7 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
     if (&c != &winner && gain.value - 1.0 < 2.0 * gain.standard_error)
       tied += (tied.empty() ? "" : ", ") + c.code.name();
   }
-  if (!tied.empty() && !camera.operating.multipath)
+  if (!tied.empty() && !camera.operating.multipath && !camera.operating.interference)
     text += "\n  within two standard errors of the best: " + tied +
             " (increase --trials to distinguish them)";
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
@@ -83,6 +92,7 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
         {c->code.name(), exposures_by_taps(c->error), error_text(*c, DepthErrorKind::linear),
          error_text(*c, DepthErrorKind::circular), fmt::format("{}", c->rotation_bin), c->method});
   if (camera.operating.multipath) add_multipath(rows, result, kind);
+  if (camera.operating.interference) add_interference(rows, result, camera.operating.measure());
   if (camera.operating.velocity_m_per_s) add_motion(rows, result, camera.operating.measure());
   session.say(text_table(rows));
   session.say(depth_error_legend);

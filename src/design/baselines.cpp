@@ -37,14 +37,19 @@ int trials_per_point(const Camera& camera) {
   return std::max(min_trials_per_point, trials_of_all_points / std::max(1, points));
 }
 
+/// With the light of other cameras, if the camera has operating.interference.
 double circular_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options) {
+  if (camera.operating.interference)
+    return interference_error(code, camera, options).circular.geometric_mean_m.value;
   return geometric_mean_error_m(evaluate(code, camera, options),
                                 {DepthErrorKind::circular, camera.operating.statistic});
 }
 
 double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {
   const EvaluateOptions options{.trials = trials, .seed = seed, .bounds = false};
-  if (!rotates(camera, {})) return circular_error_m(code, camera, options);
+  // Interference is the same at every origin.
+  if (camera.operating.interference || !rotates(camera, {}))
+    return circular_error_m(code, camera, options);
   const std::vector<double> of_rotation =
       best_rotation(code, camera, options).linear_geometric_mean_m;
   return *std::min_element(of_rotation.begin(), of_rotation.end());
@@ -75,6 +80,23 @@ std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, co
   for (std::size_t i = 0; i < codes.size(); ++i)
     if (codes[i]) errors_m[i] = by_all_m[i];
   return errors_m;
+}
+
+/// Returns errors or, with operating.interference, errors relative to the least: the smaller of the
+/// ratios with and without interference, so that the best codes of both kinds compete.
+/// @param errors_on  errors on a camera, infinite for codes that do not compete
+template <typename ErrorsOn>
+std::vector<double> competing_errors(const Camera& camera, const ErrorsOn& errors_on) {
+  std::vector<double> with = errors_on(camera);
+  if (!camera.operating.interference || with.empty()) return with;
+  Camera alone = camera;
+  alone.operating.interference.reset();
+  const std::vector<double> without = errors_on(alone);
+  const double least_with = *std::min_element(with.begin(), with.end());
+  const double least_without = *std::min_element(without.begin(), without.end());
+  for (std::size_t i = 0; i < with.size(); ++i)
+    if (with[i] < infinity) with[i] = std::min(with[i] / least_with, without[i] / least_without);
+  return with;
 }
 
 std::optional<std::string> why_not_comparable(const CodeSet& code, const Camera& camera) {
@@ -159,7 +181,8 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   std::vector<const CodeSet*> comparable(names.size(), nullptr);
   for (std::size_t i = 0; i < names.size(); ++i)
     if (!reasons[i]) comparable[i] = &*codes[i];
-  const std::vector<double> errors_m = errors_of_contenders_m(std::move(comparable), camera, seed);
+  const std::vector<double> errors = competing_errors(
+      camera, [&](const Camera& on) { return errors_of_contenders_m(comparable, on, seed); });
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (reasons[i])
@@ -167,14 +190,14 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
     else
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
+                   [&](std::size_t a, std::size_t b) { return errors[a] < errors[b]; });
   const std::string worse = fmt::format(
       "in {} or {} trials per operating point, the error is more than {} times the error of the "
       "best standard code",
       trials_per_point(camera) / share_looked_at, trials_per_point(camera), contending);
   const std::string beside = fmt::format("{} other codes have smaller errors", max_contenders);
   for (const std::size_t i : order)
-    if (!(errors_m[i] <= contending * errors_m[order.front()]))
+    if (!(errors[i] <= contending * errors[order.front()]))
       found.left_out[worse].push_back(names[i]);
     else if (found.codes.size() == max_contenders)
       found.left_out[beside].push_back(names[i]);
@@ -200,9 +223,11 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
     reasons[at] = why_not_comparable(codes[at], camera);
     if (!reasons[at]) comparable[at] = &codes[at];
   });
-  std::vector<double> errors_m = first_errors_m(
-      comparable, camera, trials.value_or(trials_per_point(camera)), search_seed(options));
-  for (std::size_t i = 0; i < codes.size(); ++i) errors_m[i] = errors_m[first_like(codes, i)];
+  std::vector<double> errors = competing_errors(camera, [&](const Camera& on) {
+    return first_errors_m(comparable, on, trials.value_or(trials_per_point(on)),
+                          search_seed(options));
+  });
+  for (std::size_t i = 0; i < codes.size(); ++i) errors[i] = errors[first_like(codes, i)];
   const auto note = [](const std::string& name, std::vector<std::string>& names) {
     if (names.empty() || names.back() != name) names.push_back(name);
   };
@@ -210,10 +235,10 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
   for (std::size_t i = 0; i < codes.size(); ++i)
     if (reasons[i])
       note(codes[i].name(), found.left_out[*reasons[i]]);
-    else if (errors_m[i] < infinity)
+    else if (errors[i] < infinity)
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
+                   [&](std::size_t a, std::size_t b) { return errors[a] < errors[b]; });
   std::map<int, std::size_t> of_exposures;
   for (const std::size_t i : order)
     if (of_exposures[codes[i].exposures()]++ < max_of_exposures) found.codes.push_back(codes[i]);

@@ -34,14 +34,19 @@ std::string among_exposures(const DesignResult& result, DepthErrorMeasure measur
   return fmt::format(" with {} exposures", fmt::join(exposures, ", "));
 }
 
+std::string includes_text(const OperatingRange& range) {
+  if (range.multipath && range.interference) return ", including multipath and interference";
+  if (range.multipath) return ", including multipath";
+  return range.interference ? ", including interference" : "";
+}
+
 std::string what_it_beats(const Camera& camera, const DesignResult& result,
                           DepthErrorMeasure measure, const std::vector<int>& exposures) {
   const Candidate& winner = result.winner();
   const std::string among = among_exposures(result, measure, exposures);
-  std::string text =
-      fmt::format("{} is the best code{}{}. Its {} error is {}", winner.code.name(), among,
-                  camera.operating.multipath ? ", including multipath" : "", name_of(measure),
-                  length_mm(winner.error.of(measure).geometric_mean_m));
+  std::string text = fmt::format("{} is the best code{}{}. Its {} error is {}", winner.code.name(),
+                                 among, includes_text(camera.operating), name_of(measure),
+                                 length_mm(winner.error.of(measure).geometric_mean_m));
   const bool is_standard = !winner.is_designed() && winner.method != "atlas";
   if (const Candidate* baseline = best_baseline(result, measure)) {
     const Estimate gain = gain_over(result, *baseline, measure);
@@ -155,6 +160,29 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
   return text + ". The best code has too few independent means for two-return decoding.";
 }
 
+/// Gain over the code that would be the best one without other cameras.
+std::string behind_interference(const OperatingInterference& others, const DesignResult& result,
+                                DepthErrorMeasure measure) {
+  const Candidate& winner = result.winner();
+  const auto error_of = [&](const Candidate& c) {
+    return c.interference->of(measure.kind).geometric_mean_m;
+  };
+  const std::string text = fmt::format(
+      "With the light of {} other camera{}, each {} times the signal, the {} error of the best "
+      "code is {}",
+      others.cameras, others.cameras == 1 ? "" : "s", others.signal_ratio, name_of(measure.kind),
+      length_mm(error_of(winner)));
+  const Candidate& alone = *by_geometric_mean_error(result, measure).front();
+  if (&alone == &winner)
+    return text + "; this code also has the smallest error without other cameras.";
+  const Estimate gain = ratio_of(error_of(alone), error_of(winner));
+  return text +
+         fmt::format(
+             "; the error of {}, which is the best code without other cameras, is {}, {:.2f} "
+             "± {:.2f} times as large.",
+             alone.code.name(), length_mm(error_of(alone)), gain.value, gain.standard_error);
+}
+
 std::string behind_motion(double velocity_m_per_s, const ExposureOrder& chosen) {
   const auto rms_mm = [](double error_m) { return fmt::format("{:.3f} mm", 1e3 * error_m); };
   const std::string text = fmt::format(
@@ -180,6 +208,8 @@ std::vector<std::string> explain(const Camera& camera, const DesignResult& resul
   if (camera.operating.multipath)
     sentences.push_back(
         behind_multipath(*camera.operating.multipath, result, camera.operating.error));
+  if (camera.operating.interference)
+    sentences.push_back(behind_interference(*camera.operating.interference, result, measure));
   if (const auto& chosen = result.winner().exposure_order)
     sentences.push_back(behind_motion(*camera.operating.velocity_m_per_s, *chosen));
   return sentences;

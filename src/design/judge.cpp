@@ -86,7 +86,9 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
   judging.seed = options.seed;
   judging.outlier_threshold_m = options.outlier_threshold_m;
   const auto& later = camera.operating.multipath;
-  const ProgressParts parts(progress, {50, later ? 10.0 : 50.0, later ? 40.0 : 0.0});
+  const bool has_others = camera.operating.interference.has_value();
+  const ProgressParts parts(progress,
+                            {50, later ? 10.0 : 50.0, later ? 40.0 : 0.0, has_others ? 50.0 : 0.0});
   if (rotates(camera, options)) {
     EvaluateOptions search = judging;
     search.seed = search_seed(options);
@@ -98,6 +100,8 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
   if (later)
     candidate.multipath =
         operating_multipath_report(candidate.code, camera, *later, judging, parts[2]);
+  if (has_others)
+    candidate.interference = interference_error(candidate.code, camera, judging, parts[3]);
   candidate.code.provenance.depth_error_m =
       geometric_mean_error_m(candidate.error, camera.operating.measure());
 }
@@ -170,11 +174,15 @@ void require_judgeable(const Camera& camera, const DesignOptions& options) {
   camera.validate();
   require(!options.robust || !camera.operating.multipath, "DesignOptions::robust", "true",
           "must be false with operating.multipath");
-  const bool needs_mae = options.robust || camera.operating.multipath;
+  require(!options.robust || !camera.operating.interference, "DesignOptions::robust", "true",
+          "must be false with operating.interference");
+  const bool needs_mae =
+      options.robust || camera.operating.multipath || camera.operating.interference;
   require(!needs_mae || camera.operating.statistic == ErrorStatistic::mae, "operating.statistic",
           "rmse",
           options.robust ? "must be \"mae\" with robust designs, which are ranked by mean errors"
-                         : "must be \"mae\" with operating.multipath, whose errors are means");
+                         : "must be \"mae\" with operating.multipath or operating.interference, "
+                           "whose errors are means");
 }
 
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera) {
@@ -210,7 +218,10 @@ double ranking_error_m(const Candidate& candidate, const Camera& camera,
                        const DesignOptions& options) {
   if (options.robust && candidate.robustness)
     return candidate.robustness->worst_calibrated_m().value;
-  const double error_m = geometric_mean_error_m(candidate.error, camera.operating.measure());
+  const double error_m =
+      camera.operating.interference && candidate.interference
+          ? candidate.interference->of(camera.operating.error).geometric_mean_m.value
+          : geometric_mean_error_m(candidate.error, camera.operating.measure());
   if (!camera.operating.multipath || !candidate.multipath) return error_m;
   return camera.operating.multipath->weighed(
       error_m, candidate.multipath->single_path.of(camera.operating.error).value);

@@ -20,7 +20,7 @@ bool rotates(const Camera& camera, const DesignOptions& options);
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
 
 /// @throws std::invalid_argument for invalid options or camera, or robust codes with
-///   operating.multipath
+///   operating.multipath or operating.interference
 void require_judgeable(const Camera& camera, const DesignOptions& options);
 
 /// As judge() with validated options.

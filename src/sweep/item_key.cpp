@@ -102,6 +102,13 @@ std::string setup_key(const Camera& camera, const DesignOptions& options, double
     append(text, "delay ", later->delay_m);
     append(text, "weight ", {&later->weight, 1});
   }
+  if (const auto& others = camera.operating.interference) {
+    const double numbers[] = {static_cast<double>(others->cameras), others->signal_ratio,
+                              others->frequency_offset_hz, static_cast<double>(others->parts)};
+    append(text, "interference ", numbers);
+    fmt::format_to(std::back_inserter(text), "{} {}\n", others->code,
+                   static_cast<int>(others->spreading));
+  }
   return fnv1a_128_hex(text);
 }
 

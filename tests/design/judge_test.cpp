@@ -277,6 +277,32 @@ TEST(Judge, RejectsRootMeanSquaresWhereOnlyMeansAreKnown) {
               ThrowsMessage<InvalidArgument>(HasSubstr("operating.statistic = rmse; must be")));
 }
 
+TEST(Judge, RanksByTheErrorWithOtherCameras) {
+  Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  camera.operating.signal_e_per_s = {1e6};
+  camera.operating.ambient_e_per_s = {1e5};
+  const DesignOptions options = small_options();
+  const DesignResult alone = judge(camera, families(camera), options);
+  EXPECT_FALSE(alone.winner().interference);
+  camera.operating.interference = OperatingInterference{.cameras = 2, .signal_ratio = 0.2};
+  const DesignResult result = judge(camera, families(camera), options);
+  for (const Candidate& c : result.candidates) {
+    ASSERT_TRUE(c.interference);
+    const double error_m = c.interference->circular.geometric_mean_m.value;
+    EXPECT_EQ(ranking_error_m(c, camera, options), error_m);
+    EXPECT_GT(error_m, c.error.circular.geometric_mean_m.value);
+    EXPECT_LE(result.winner().interference->circular.geometric_mean_m.value, error_m);
+    EXPECT_EQ(c.error.circular.geometric_mean_m.value,
+              alone.find(c.code.name())->error.circular.geometric_mean_m.value);
+  }
+  EXPECT_THAT(result.explanation,
+              Contains(HasSubstr("With the light of 2 other cameras, each 0.2 times the signal")));
+  DesignOptions robust = options;
+  robust.robust = true;
+  EXPECT_THAT([&] { judge(camera, families(camera), robust); },
+              ThrowsMessage<InvalidArgument>(HasSubstr("operating.interference")));
+}
+
 TEST(DesignSeed, IsPassedToFactorization) {
   const Camera camera = small_camera("paper-5f0");
   DesignOptions options = small_options();

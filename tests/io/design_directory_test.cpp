@@ -152,6 +152,29 @@ TEST(DesignDirectory, KeepsTheOrderOfExposures) {
   EXPECT_EQ(read->given_rms_bias_m, written->given_rms_bias_m);
 }
 
+TEST(DesignDirectory, KeepsErrorsWithOtherCameras) {
+  Camera lit = small_camera("paper-10f0");
+  lit.operating.interference.emplace();
+  for (const bool uniform_albedo : {false, true}) {
+    lit.operating.uniform_albedo = uniform_albedo;
+    const DesignOptions options = small_options();
+    const DesignResult result =
+        judge(lit, {{.code = build_family("sinusoid-k4", lit), .method = "family"}}, options);
+    const TemporaryDirectory place;
+    const DesignDirectory directory(place / "d");
+    directory.write(lit, result, options, OutputPolicy::refuse_existing);
+    const DesignRecord record = directory.read();
+    EXPECT_EQ(record.camera, lit);
+    const auto& read = record.result.winner().interference;
+    const auto& written = result.winner().interference;
+    ASSERT_TRUE(read && written);
+    EXPECT_EQ(read->rms_m, written->rms_m);
+    EXPECT_EQ(read->circular.geometric_mean_m.value, written->circular.geometric_mean_m.value);
+    EXPECT_EQ(read->points.front().expected_rmse_m, written->points.front().expected_rmse_m);
+    EXPECT_EQ(read->points.back().shares.wrong, written->points.back().shares.wrong);
+  }
+}
+
 TEST(DesignDirectory, ExistingFilesAreReplacedOnRequestOnly) {
   const TemporaryDirectory place;
   const DesignDirectory directory(place.path());

@@ -68,6 +68,8 @@ TEST(WorkList, TheKeyOfADesignedCodeDependsOnAllDesignSettings) {
       "code = \"optimized-k3\"\n" + axis("seed", "2"),
       "code = \"optimized-k3\"\n" + axis("operating.error", "\"circular\""),
       "code = \"optimized-k3\"\n" + axis("operating.multipath", "{ratio = [0.1, 0.2]}"),
+      "code = \"optimized-k3\"\n" + axis("operating.interference", "{cameras = 2}"),
+      "code = \"optimized-k3\"\n" + axis("operating.interference", "{code = \"square-k4\"}"),
       "code = \"optimized-k3\"\n" + axis("sensor.taps", "2")};
   std::set<std::string> keys;
   for (const std::string& text : texts) {

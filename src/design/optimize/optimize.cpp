@@ -131,13 +131,15 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const Cod
   return finished;
 }
 
-/// Returns the best code or, with operating multipath, all of them. Without multipath, judge()
-/// would choose by chance, because its standard error of linear errors exceeds the differences.
+/// Returns the best code or, with operating multipath or interference, all of them, because the
+/// optimized error does not contain the whole ranking criterion. Otherwise, judge() would choose by
+/// chance, because its standard error of linear errors exceeds the differences.
 std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool& pool,
                                      const Camera& camera, const OptimizeOptions& options,
                                      std::vector<FinishedCode> finished) {
   const WaveformSpace& space = problem.space;
-  if (!camera.operating.multipath) finished.resize(1);
+  const bool has_other_criterion = camera.operating.multipath || camera.operating.interference;
+  if (!has_other_criterion) finished.resize(1);
   std::vector<Candidate> candidates;
   for (const FinishedCode& its : finished) {
     pool.record(its.log_error_bin);

@@ -231,6 +231,8 @@ DesignRecord DesignDirectory::read() const {
       candidate.robustness = fields_from_json<RobustnessReport>(*robustness);
     if (record.camera.operating.multipath)
       candidate.multipath = fields_from_json<OperatingMultipathReport>(entry.member("multipath"));
+    if (record.camera.operating.interference)
+      candidate.interference = fields_from_json<InterferenceReport>(entry.member("interference"));
     if (record.camera.operating.velocity_m_per_s)
       candidate.exposure_order = fields_from_json<ExposureOrder>(entry.member("exposure_order"));
     if (name == best) result.best = result.candidates.size();
