@@ -22,6 +22,7 @@ from typing import Optional, Union
 
 # Tables whose class is not named after the last word of their key.
 CLASS_NAMES = {"raw": "RawMarkers", "operating.multipath": "OperatingMultipath",
+               "operating.interference": "OperatingInterference",
                "lens.pinhole": "Lens", "lens.blur": "LensBlur", "light.square": "SquareLight",
                "temperature.sensor": "SensorTemperature"}
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "choice": "str",

@@ -48,6 +48,8 @@ py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
       candidate.robustness ? py::object(robustness_dict(*candidate.robustness)) : py::none();
   dict["multipath"] =
       candidate.multipath ? py::object(operating_multipath_dict(*candidate.multipath)) : py::none();
+  dict["interference"] =
+      candidate.interference ? py::object(fields_dict(*candidate.interference)) : py::none();
   dict["exposure_order"] = py::none();
   if (const auto& chosen = candidate.exposure_order) {
     py::dict order;

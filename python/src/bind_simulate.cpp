@@ -8,6 +8,7 @@
 #include "progress.hpp"
 #include "reports.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/interference_error.hpp"
 #include "tofsmith/simulate/motion_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -54,6 +55,13 @@ void bind_simulate(py::module_& module) {
     const EvaluateOptions options = options_of<EvaluateOptions>(values);
     return fields_dict(without_gil(callback, [&](const Progress& progress) {
       return motion_error(code, camera, velocity_m_per_s, options, progress);
+    }));
+  });
+  module.def("interference_error", [](const CodeSet& code, const Camera& camera,
+                                      const py::dict& values, const py::object& callback) {
+    const EvaluateOptions options = options_of<EvaluateOptions>(values);
+    return fields_dict(without_gil(callback, [&](const Progress& progress) {
+      return interference_error(code, camera, options, progress);
     }));
   });
   module.def("generator_loss", [](const CodeSet& code, const Camera& camera, const py::dict& values,

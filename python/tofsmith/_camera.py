@@ -21,6 +21,7 @@ from ._camera_fields import (
     LensBlur,
     Light,
     Operating,
+    OperatingInterference,
     OperatingMultipath,
     Optics,
     Playback,
@@ -340,6 +341,8 @@ class Camera:
         operating = _tuples(self._fields["operating"])
         if operating.get("multipath") is not None:
             operating["multipath"] = OperatingMultipath(**_tuples(operating["multipath"]))
+        if operating.get("interference") is not None:
+            operating["interference"] = OperatingInterference(**operating["interference"])
         return Operating(**operating)
 
     @property

@@ -17,7 +17,14 @@ from ._check import FloatArray, Path, Progress
 from ._code import CodeSet
 from ._option_fields import DesignOptions, RequirementOptions
 from ._options import takes
-from ._reports import DepthErrorReport, RobustnessReport, OperatingMultipathReport, report_of
+from ._reports import (
+    DepthErrorReport,
+    InterferenceReport,
+    OperatingMultipathReport,
+    RobustnessReport,
+    interference_report_of,
+    report_of,
+)
 
 
 @dataclass(frozen=True)
@@ -77,7 +84,7 @@ class Candidate:
     method : str
         family, naive, reference, atlas, factorize, optimize, search or frequencies.
     ranking_error_m : float
-        Ranking criterion [m]: depth error, including robustness and multipath.
+        Ranking criterion [m]: depth error, including robustness, multipath and interference.
     error : DepthErrorReport
     rotation_bin : int
         Rotation of the origin of depth.
@@ -95,6 +102,8 @@ class Candidate:
     robustness : RobustnessReport, optional
     multipath : OperatingMultipathReport, optional
         For cameras with `operating.multipath`.
+    interference : InterferenceReport, optional
+        For cameras with `operating.interference`.
     exposure_order : ExposureOrder, optional
         For cameras with `operating.velocity_m_per_s`.
     """
@@ -112,6 +121,7 @@ class Candidate:
     message: str
     robustness: Optional[RobustnessReport]
     multipath: Optional[OperatingMultipathReport]
+    interference: Optional[InterferenceReport]
     exposure_order: Optional[ExposureOrder]
 
     @property
@@ -203,6 +213,8 @@ def _candidate(values: dict[str, Any], camera: Camera) -> Candidate:
         values["robustness"] = RobustnessReport(**values["robustness"])
     if values["multipath"] is not None:
         values["multipath"] = OperatingMultipathReport(**values["multipath"])
+    if values["interference"] is not None:
+        values["interference"] = interference_report_of(values["interference"])
     if values["exposure_order"] is not None:
         values["exposure_order"] = ExposureOrder(**values["exposure_order"])
     return Candidate(**values)

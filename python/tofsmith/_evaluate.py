@@ -16,10 +16,12 @@ from ._options import takes
 from ._reports import (
     DepthErrorReport,
     GeneratorLoss,
+    InterferenceReport,
     MotionErrors,
     MotionReport,
     RobustnessReport,
     WrongShares,
+    interference_report_of,
     report_of,
 )
 
@@ -193,3 +195,29 @@ def motion_error(
         shares = WrongShares(**values[name].pop("shares"))
         values[name] = MotionErrors(shares=shares, **values[name])
     return MotionReport(**values)
+
+
+@takes(EvaluateOptions)
+def interference_error(
+    code: CodeLike,
+    camera: CameraLike,
+    *,
+    progress: Progress = None,
+    **options: Unpack[EvaluateOptions],
+) -> InterferenceReport:
+    """Computes the depth error with the light of other cameras, as the camera's
+    `operating.interference` describes them; see docs/robustness.md.
+
+    Parameters
+    ----------
+    code : CodeSet, name of a family or file
+    camera : Camera or its name
+    progress : callable, optional
+    **options
+        As in EvaluateOptions; trials, seed, method and unwrap_weights are used.
+    """
+    camera = camera_of(camera)
+    handle = code_of(code, camera)._handle
+    callback = _check.progress(progress)
+    values = _tofsmith.interference_error(handle, camera._handle, dict(options), callback)
+    return interference_report_of(values)

@@ -224,6 +224,55 @@ class MotionReport:
 
 
 @dataclass(frozen=True)
+class InterferenceReport:
+    """Effect of the light of other cameras, as in the camera's `operating.interference`.
+
+    Attributes
+    ----------
+    rms_m : float
+        Root mean square error of zncc without noise, to first order in the light of the others.
+    linear, circular : DepthErrorMean
+        Mean errors with noise, over the operating points.
+    shares : WrongShares
+        Means over the operating points.
+    signal_e_per_s, ambient_e_per_s : ndarray
+        Operating points.
+    expected_rmse_m : ndarray
+        Root mean square error of zncc with interference and noise, to first order.
+    linear_mde_m, linear_se_m, circular_mde_m, circular_se_m : ndarray
+        Mean absolute error of trials.
+    circular_rmse_m, circular_rmse_se_m : ndarray
+        Root mean square error of trials.
+    wrong, wrong_ok, wrong_inconsistent, inconsistent : ndarray
+        As in WrongShares.
+    """
+
+    rms_m: float
+    linear: DepthErrorMean
+    circular: DepthErrorMean
+    shares: WrongShares
+    signal_e_per_s: FloatArray
+    ambient_e_per_s: FloatArray
+    expected_rmse_m: FloatArray
+    linear_mde_m: FloatArray
+    linear_se_m: FloatArray
+    circular_mde_m: FloatArray
+    circular_se_m: FloatArray
+    circular_rmse_m: FloatArray
+    circular_rmse_se_m: FloatArray
+    wrong: FloatArray
+    wrong_ok: FloatArray
+    wrong_inconsistent: FloatArray
+    inconsistent: FloatArray
+
+
+def interference_report_of(values: dict[str, Any]) -> InterferenceReport:
+    parts: dict[str, Any] = {name: DepthErrorMean(**values.pop(name))
+                             for name in ("linear", "circular")}
+    return InterferenceReport(**values, **parts, shares=WrongShares(**values.pop("shares")))
+
+
+@dataclass(frozen=True)
 class OperatingMultipathReport:
     """Depth error if every pixel has a second return as in the camera's `operating.multipath`:
     geometric means over its operating points [m], each as (value, standard error).

@@ -234,6 +234,9 @@ def robustness(
 def motion_error(
     code: CodeSet, camera: Camera, velocity_m_per_s: float, options: _Options, progress: _Progress, /
 ) -> _Dict: ...
+def interference_error(
+    code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /
+) -> _Dict: ...
 def generator_loss(
     code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /
 ) -> _Dict: ...

@@ -36,7 +36,8 @@ def test_every_key_of_a_camera_file_is_an_attribute():
     parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback, "raw": ts.RawMarkers, "temperature": ts.Temperature,
              "temperature.sensor": ts.SensorTemperature,
              "operating": ts.Operating,
-             "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
+             "multipath": ts.OperatingMultipath, "interference": ts.OperatingInterference,
+             "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():
         *path, last = key.split(".")
         if key == "lens.calibration":  # a file that replaces the other keys

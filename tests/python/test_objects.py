@@ -173,6 +173,21 @@ def test_motion_is_evaluated_and_lowered_by_the_order_of_exposures():
     assert chosen.rms_bias_m <= chosen.given_rms_bias_m
 
 
+def test_interference_is_evaluated_and_ranked():
+    levels = {"signal_e_per_s": [1e5, 1e6], "ambient_e_per_s": [1e3]}
+    others = {"cameras": 2, "signal_ratio": 0.05}
+    camera = ts.Camera("paper-10f0", operating=levels | {"interference": others})
+    assert camera.operating.interference == ts.OperatingInterference(cameras=2, signal_ratio=0.05)
+    report = ts.interference_error("sinusoid-k4", camera, trials=2000)
+    assert report.rms_m > 0 and report.circular_rmse_m.shape == report.wrong_ok.shape == (2,)
+    assert report.circular_rmse_m[1] == pytest.approx(report.expected_rmse_m[1], rel=0.1)
+    assert report.shares.wrong == pytest.approx(report.wrong.mean())
+    winner = ts.design(camera, effort=0, trials=1000, atlas_cameras=0).winner
+    assert winner.ranking_error_m == winner.interference.linear.geometric_mean_m
+    with pytest.raises(ValueError, match="operating.interference = none; must be given"):
+        ts.interference_error("sinusoid-k4", "paper-10f0")
+
+
 def test_frequencies_of_a_chip_are_found():
     camera = ts.Camera("mlx75027", operating={"working_distance_m": [0.3, 6.0]})
     assert camera.square_light.frequencies_hz == (20e6, 40e6, 60e6, 80e6, 100e6)
