@@ -269,7 +269,8 @@ class InterferenceReport:
 def interference_report_of(values: dict[str, Any]) -> InterferenceReport:
     parts: dict[str, Any] = {name: DepthErrorMean(**values.pop(name))
                              for name in ("linear", "circular")}
-    return InterferenceReport(**values, **parts, shares=WrongShares(**values.pop("shares")))
+    shares = WrongShares(**values.pop("shares"))
+    return InterferenceReport(**values, **parts, shares=shares)
 
 
 @dataclass(frozen=True)

@@ -88,6 +88,7 @@ std::string setup_key(const Camera& camera, const CodeSet& code) {
                  code.taps());
   for (int e = 0; e < code.exposures(); ++e) append(text, code.modulation(e));
   for (int i = 0; i < code.measurements(); ++i) append(text, code.demodulation(i));
+  if (!code.exposure_shares().empty()) append(text, "exposure shares ", code.exposure_shares());
   return fnv1a_128_hex(text);
 }
 
@@ -109,6 +110,11 @@ std::string setup_key(const Camera& camera, const DesignOptions& options, double
     fmt::format_to(std::back_inserter(text), "{} {}\n", others->code,
                    static_cast<int>(others->spreading));
   }
+  if (const auto& velocity = camera.operating.velocity_m_per_s)
+    append(text, "velocity ", {&*velocity, 1});
+  if (camera.operating.statistic != ErrorStatistic::mae)
+    fmt::format_to(std::back_inserter(text), "statistic {}\n",
+                   static_cast<int>(camera.operating.statistic));
   return fnv1a_128_hex(text);
 }
 

@@ -70,6 +70,8 @@ TEST(WorkList, TheKeyOfADesignedCodeDependsOnAllDesignSettings) {
       "code = \"optimized-k3\"\n" + axis("operating.multipath", "{ratio = [0.1, 0.2]}"),
       "code = \"optimized-k3\"\n" + axis("operating.interference", "{cameras = 2}"),
       "code = \"optimized-k3\"\n" + axis("operating.interference", "{code = \"square-k4\"}"),
+      "code = \"optimized-k3\"\n" + axis("operating.velocity_m_per_s", "1"),
+      "code = \"optimized-k3\"\n" + axis("operating.statistic", "\"rmse\""),
       "code = \"optimized-k3\"\n" + axis("sensor.taps", "2")};
   std::set<std::string> keys;
   for (const std::string& text : texts) {
@@ -105,6 +107,8 @@ TEST(WorkList, AKeyDependsOnWaveformsButNotOnTheCodesName) {
   };
   EXPECT_EQ(key_of_file(code.renamed("mine")), family.item(0).key);
   EXPECT_NE(key_of_file(code.rotated(1)), family.item(0).key);
+  ASSERT_EQ(code.exposures(), 4);
+  EXPECT_NE(key_of_file(code.with_exposure_shares({0.4, 0.2, 0.2, 0.2})), family.item(0).key);
 }
 
 TEST(WorkList, AKeyDependsOnTheSamplesOfAMeasuredResponse) {
