@@ -64,7 +64,8 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
     text += "\n  within two standard errors of the best: " + tied +
             " (increase --trials to distinguish them)";
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
-    if (const Candidate* other = result.find(name); other && other != &winner)
+    if (const Candidate* other = result.find(name);
+        other && other != &winner && !camera.operating.interference)
       text +=
           fmt::format("\n  {:.2f}x better than {}", gain_over(result, *other, measure).value, name);
   for (const Candidate& c : result.candidates)

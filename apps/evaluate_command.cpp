@@ -184,7 +184,9 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
     session.say(text_table(interference_rows(codes, every_level)));
     session.say(fmt::format(
         "interference of {}; interference: rms error without noise, first order; expected rms: "
-        "with noise; alone: without other cameras; wrong: more than 3 deviations; detected: share "
+        "with noise; rms, error: root mean square and mean error of trials; alone: without other "
+        "cameras; wrong: more than 3 deviations; wrong ok: the same with status ok; detected: "
+        "share "
         "of wrong depths with status inconsistent",
         interference_text(*camera.operating.interference)));
   }

@@ -131,7 +131,7 @@ void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, s
                       unfiltered);
   const Image<float>& factor = pipeline.deviation_factor();
   if (decoded.deviation_m && !factor.empty())
-    std::transform(factor.pixels.begin(), factor.pixels.end(), decoded.deviation_m,
+    std::transform(decoded.deviation_m, decoded.deviation_m + pixels, &factor.pixels[first],
                    decoded.deviation_m, std::multiplies<>());
   if (wanted.averaged) keep_averaged(pipeline.numbers(), wanted.averaged);
 }

@@ -47,7 +47,7 @@ double circular_error_m(const CodeSet& code, const Camera& camera, const Evaluat
 
 double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {
   const EvaluateOptions options{.trials = trials, .seed = seed, .bounds = false};
-  // Interference is the same at every origin.
+  // Circular errors with interference are the same at every origin.
   if (camera.operating.interference || !rotates(camera, {}))
     return circular_error_m(code, camera, options);
   const std::vector<double> of_rotation =

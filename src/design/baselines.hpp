@@ -27,7 +27,8 @@ void add_baselines(const Camera& camera, const DesignOptions& options,
 std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options);
 
 /// Returns the error of a code by few trials with the random numbers of searches [m], circular or
-/// linear at the best origin, as selected by the camera; infinite if the code determines no depth.
+/// linear at the best origin, as selected by the camera; circular with operating.interference;
+/// infinite if the code determines no depth.
 /// @param more  times the usual number of trials
 double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options,
                      int more = 1);

@@ -47,6 +47,8 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result,
   std::string text = fmt::format("{} is the best code{}{}. Its {} error is {}", winner.code.name(),
                                  among, includes_text(camera.operating), name_of(measure),
                                  length_mm(winner.error.of(measure).geometric_mean_m));
+  // Ratios of errors without other cameras would not explain the ranking.
+  if (camera.operating.interference) return text + " without other cameras.";
   const bool is_standard = !winner.is_designed() && winner.method != "atlas";
   if (const Candidate* baseline = best_baseline(result, measure)) {
     const Estimate gain = gain_over(result, *baseline, measure);

@@ -11,6 +11,7 @@
 #include "design/exposure_shares.hpp"
 #include "simulate/shared/depth_information.hpp"
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
@@ -33,6 +34,8 @@ ExposureBound::ExposureBound(const CodeSet& code, const Camera& on)
     : exposures_(code.exposures()),
       root_mean_square_(on.operating.statistic == ErrorStatistic::rmse),
       points_(on.operating.points()) {
+  require(on.exposure_s.each_s.empty(), "exposure_s", "a list",
+          "must be one time, which the exposures share");
   const Camera camera = judged_camera(on);
   total_s_ = camera.exposure_s.total_s;
   range_m_ = camera.range_m();

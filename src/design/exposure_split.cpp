@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -43,14 +45,16 @@ std::optional<Eigen::VectorXd> shares_by_soft_error(const CodeSet& code, Camera 
   // Without band limit, only optimized waveforms require a shortest pulse.
   if (!camera.band_limited() && !camera.sensor.shortest_pulse_s)
     camera.sensor.shortest_pulse_s = suggested_shortest_pulse_s(camera);
-  if (why_not_optimizable(judged_camera(camera), code.exposures())) return std::nullopt;
+  const int steps = options.optimize.polish ? options.optimize.polish_steps : 0;
+  if (steps == 0 || why_not_optimizable(judged_camera(camera), code.exposures()))
+    return std::nullopt;
   const DesignProblem problem =
       make_design_problem({&camera, 1}, code.exposures(), std::min(camera.samples, max_samples));
   const CodeSet taps = code.is_signed() ? code.buckets_of_signed() : code;
   SampledCode sampled = sampled_on(problem.space, taps);
   sampled.shares = shares_of(code);
-  return descend_shares(problem, std::move(sampled), std::max(1, options.optimize.polish_steps),
-                        options.optimize.trials_per_step, options.seed, share_descent_key);
+  return descend_shares(problem, std::move(sampled), steps, options.optimize.trials_per_step,
+                        options.seed, share_descent_key);
 }
 
 /// Returns the best of the proposed shares in few trials.

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "report/shared/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
@@ -94,8 +97,9 @@ Section interference_section(std::span<const EvaluatedCode> codes,
               "Depth error with the light of {}. Interference: rms error of zncc without noise, to "
               "first order. Expected rms: the same with noise. Rms, error: rms and mean circular "
               "error of trials. Alone: mean circular error without other cameras. Wrong: share of "
-              "depths whose error exceeds three predicted standard deviations. Wrong ok: share of "
-              "wrong depths with status ok. Detected: share of the wrong depths with status "
+              "depths whose error exceeds three predicted standard deviations. Wrong ok: "
+              "share of depths that are wrong with status ok. Detected: share of the wrong depths "
+              "with status "
               "inconsistent. Rows of all light levels contain geometric means of errors and means "
               "of shares.",
               interference_text(others)),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "simulate/interference_light.hpp"
 #include "simulate/pixel_trials.hpp"
@@ -79,7 +80,8 @@ ExpectedErrors::ExpectedErrors(const ForwardModel& model, const Camera& camera,
                                const InterferenceLight& other)
     : operating_(camera.operating), range_m_(camera.range_m()) {
   const OperatingInterference& interference = *operating_.interference;
-  other_per_signal_ = interference.cameras * interference.signal_ratio * other.mean();
+  other_per_signal_ = interference.cameras * interference.signal_ratio * other.mean() *
+                      (camera.temperature ? camera.temperature->signal_gain() : 1.0);
 
   // Cameras are independent: variances add, and so do means.
   const Eigen::MatrixXd measuring = model.readout() * model.tap_exposure_s().asDiagonal();

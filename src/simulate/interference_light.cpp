@@ -36,12 +36,13 @@ CodeSet with_light(const CodeSet& code, const Waveform& light) {
 }
 
 /// The camera with a light source for any waveform and with lists of one value per exposure,
-/// because the number of frequencies is another one.
+/// because the number of frequencies is another one. Reversal only changes the sign of beats.
 Camera with_any_light(const CodeSet& code, Camera camera) {
   if (!camera.sensor.modulation_contrasts.empty())
     camera.sensor.modulation_contrasts = camera.sensor.contrasts_of(code);
   if (camera.playback && camera.playback->has_list())
     camera.playback->set_offsets_m(camera.playback->offsets_of(code, camera.range_m()));
+  if (camera.playback) camera.playback->reversed = false;
   camera.light.generator.reset();
   camera.light.binary = false;
   camera.light.peak_factor = 1e9;
@@ -81,6 +82,7 @@ std::vector<Eigen::VectorXcd> light_harmonics(const CodeSet& own, const Camera& 
                                               const OperatingInterference& interference) {
   Camera other = camera;
   other.fundamental_frequency_hz += interference.frequency_offset_hz;
+  if (interference.frequency_offset_hz != 0.0) other.light.generator.reset();
   std::optional<CodeSet> family;
   if (interference.code != "same") {
     other.playback.reset();
@@ -105,7 +107,7 @@ double sinc(double x) {
 
 /// Returns true if a harmonic of the demodulation changes its phase from part to part.
 bool is_spread(Spreading spreading, int harmonic) {
-  return spreading == Spreading::phases ||
+  return (spreading == Spreading::phases && harmonic > 0) ||
          (spreading == Spreading::signs && harmonic % 2 == 1);  // delay by half a period
 }
 
@@ -121,6 +123,7 @@ InterferenceLight::InterferenceLight(const CodeSet& code, const Camera& camera)
   const Eigen::Index taps = gates.cols(), side = taps / exposures_;
   const double offset_hz = interference_.frequency_offset_hz;
   const double own_hz = camera.fundamental_frequency_hz;
+  const double beat_sign = camera.playback && camera.playback->reversed ? -1.0 : 1.0;
   const PeriodicTransform transform(phases);
   for (const Eigen::VectorXcd& light : lights)
     mean_ += light[0].real() / static_cast<double>(lights.size());
@@ -143,7 +146,7 @@ InterferenceLight::InterferenceLight(const CodeSet& code, const Camera& camera)
           const double lasts_s = spread ? exposure_s / interference_.parts : exposure_s;
           (spread ? part : whole)[m] =
               gates(n, i) * std::conj(light[m]) * sinc(beat_hz * lasts_s) *
-              std::polar(1.0, -2.0 * std::numbers::pi * beat_hz * middle_s);
+              std::polar(1.0, -2.0 * std::numbers::pi * beat_sign * beat_hz * middle_s);
         }
         Eigen::VectorXd values;
         transform.inverse(double(phases) * whole, values);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/pixel_trials.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tofsmith/core/units.hpp"
@@ -12,7 +13,7 @@ namespace tofsmith {
 void PixelSums::add(const TrueDepths& true_m, double depth_m, double deviation_m,
                     PixelStatus status, double range_m) {
   inconsistent += status == PixelStatus::inconsistent;
-  if (std::isnan(depth_m)) {  // the mean errors of a guess
+  if (std::isnan(depth_m)) {  // as a guess; linear: in the middle of the range
     linear_m.add(std::abs(0.5 * range_m - true_m[0]));
     circular_m.add(0.25 * range_m);
     circular_square_m2.add(range_m * range_m / 12.0);

@@ -6,11 +6,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "camera/shared/depth_prior.hpp"
 #include "core/shared/random.hpp"
 #include "simulate/pixel_capture.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
+#include <vector>
 
 #include "design/exposure_shares.hpp"
 #include "tofsmith/camera/forward_model.hpp"

@@ -119,6 +119,17 @@ TEST(Interference, TrialsAgreeWithTheClosedFormOnOtherReceivers) {
   }
 }
 
+// chi(-z) is what a camera measures whose waveforms are played backwards in time.
+TEST(Interference, ReversedDelaysReverseTheBeat) {
+  Camera reversed = lit_camera({.frequency_offset_hz = 37.0}), slower = reversed;
+  reversed.playback.emplace().reversed = true;
+  slower.operating.interference->frequency_offset_hz = -37.0;
+  const double faster_m = rms_m("hamiltonian-k5", lit_camera({.frequency_offset_hz = 37.0}));
+  const double slower_m = rms_m("hamiltonian-k5", slower);
+  EXPECT_NEAR(rms_m("hamiltonian-k5", reversed), slower_m, 1e-6 * slower_m);
+  EXPECT_GT(std::abs(faster_m - slower_m), 1e-3 * slower_m);
+}
+
 TEST(Interference, ErrorsOfIndependentCamerasAddInQuadrature) {
   OperatingInterference others{.signal_ratio = 0.01};
   const double one_m = rms_m("hamiltonian-k5", lit_camera(others));

@@ -187,7 +187,7 @@ Eigen::VectorXd descend_shares(const DesignProblem& problem, SampledCode code, i
     RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
     const SampledCode by = gradient.at(code, decision_sharpness, random);
     code.shares = share_steps.step(by.shares, static_cast<double>(step) / steps);
-    if (2 * step >= steps) sum += code.shares;
+    if (2 * (step + 1) > steps) sum += code.shares;
   }
   return sum / sum.sum();
 }
