@@ -100,11 +100,10 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());
-    const std::unique_ptr<FramePipeline> pipeline =
-        backend.prepare({.filter = filter ? &filter->filter() : nullptr,
-                         .keeps_filtered = corrections.mixed || corrections.limits ||
-                                           planes.view().averaged || planes.view().deviation_m},
-                        raw.height, raw.width);
+    const std::unique_ptr<FramePipeline> pipeline = backend.prepare(
+        {.filter = filter ? &filter->filter() : nullptr,
+         .keeps_filtered = corrections.mixed || corrections.limits || planes.view().averaged},
+        raw.height, raw.width);
     std::vector<float> signal;  // if only the correction needs it
     if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
       signal.resize(pixels);

@@ -37,7 +37,8 @@ class DevicePipeline final : public FramePipeline {
     const double pixels = static_cast<double>(height()) * width(),
                  numbers = sizeof(float) * pixels * (table().measurements() + 1);
     if (on_device_ && steps().keeps_filtered) memory.whole += numbers;
-    if (const Filter* filter = steps().filter; filter && steps().keeps_filtered)
+    if (const Filter* filter = steps().filter;
+        filter && (steps().keeps_filtered || has_deviation_factors()))
       memory.whole += static_cast<double>(Filter::memory_bytes(
           filter->options(), height(), width(), filter->measurements(), working_threads()));
     return memory;
@@ -70,7 +71,8 @@ class DevicePipeline final : public FramePipeline {
 
   void decode(const DecodedView& decoded, const Progress& progress,
               const Image<std::uint8_t>& left_out) override {
-    FilteredFrame* const kept = steps().keeps_filtered ? &filtered_ : nullptr;
+    const bool keeps = steps().keeps_filtered || (decoded.deviation_m && has_deviation_factors());
+    FilteredFrame* const kept = keeps ? &filtered_ : nullptr;
     if (on_cpu_ && filter_)
       filter_->decode(*ready_, decoder_, decoded, kept, progress, left_out);
     else if (on_cpu_)
@@ -91,6 +93,9 @@ class DevicePipeline final : public FramePipeline {
   const Image<float>& deviation_factor() const override { return filtered_.deviation_factor(); }
 
  private:
+  bool has_deviation_factors() const {
+    return steps().filter && steps().filter->options().slope_rounds > 0;
+  }
   bool accumulates_on_device() const {
     const bool averages = steps().average > 1;
     if (averages && !decoder_.device().info().has_doubles) return false;

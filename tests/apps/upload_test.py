@@ -67,7 +67,7 @@ class Upload(CommandLineTest):
                                 ((*CODE, "--instrument", "http://x"), "tcp://host:port"),
                                 ((*CODE, "--instrument", "x", "--model", "SDG1"), "must be one of"),
                                 ((*CODE, "--dry-run", "--model", "33522", "--exposure", "4"),
-                                 "expected at most 3")):
+                                 "must be at most 3")):
             self.refuse(arguments, word, code=2)
 
     def test_an_absent_instrument(self):

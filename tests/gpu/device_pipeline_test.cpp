@@ -50,10 +50,12 @@ class DevicePipelines : public OnDevice {
 };
 
 TEST_F(DevicePipelines, EqualTheCpu) {
-  const Filter light(setup_.decoder.table(), FilterOptions::of(FilterStrength::light));
+  const Filter light(setup_.decoder.table(), FilterOptions::of(FilterStrength::light)),
+      normal(setup_.decoder.table());
   const TimeFilterOptions in_time{.max_frames = 3}, ahead{.max_frames = 3, .look_ahead = 2};
   const std::vector<FrameSteps> all_steps = {{},
                                              {.filter = &light},
+                                             {.filter = &normal},
                                              {.time_filter = in_time},
                                              {.time_filter = in_time, .filter = &light},
                                              {.time_filter = ahead},

@@ -261,7 +261,7 @@ refusals = [
     (calibrated(delays[:3], frames), ValueError, "3"),
     (calibrated(delays / 9, frames), ValueError, "period"),
     (calibrated(delays * np.nan, frames), ValueError, "sweep.delay_periods: got nan at 0; needs finite numbers"),
-    (calibrated(delays, frames, target_distance_m=1.0), ValueError, "target_distance_m requires the camera's [lens]"),
+    (calibrated(delays, frames, target_distance_m=1.0), ValueError, "requires the camera's [lens]"),
     (calibrated(delays, frames, dark=frames[0]), ValueError, "dark: got shape (2, 2, 4); needs (F, H, W, K)"),
     (calibrated(delays, frames, geometry_m=frames), ValueError, "geometry_m: got shape (4, 2, 2, 4); needs (H, W)"),
     (lambda: ts.calibrate_correlation(3, base), TypeError, "sweep: got int 3; needs a tofsmith.DelaySweep"),

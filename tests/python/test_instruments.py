@@ -365,7 +365,7 @@ def test_missing_pyvisa_is_reported_with_its_package():
 refusals = [
     ({"model": "SDG1"}, "must be one of"),
     ({"exposre": 1}, "did you mean exposure?"),
-    ({"exposure": 9}, "expected at most 4 and 1"),
+    ({"exposure": 9}, "exposure = 9; must be at most 4"),
     ({"light_channel": 0, "sensor_channel": 0}, "sensor_channel = 0"),
     ({"filter": "none"}, "filter = none; must be step, normal or off"),
     ({"tables": {"bits": 99}}, "bits"),

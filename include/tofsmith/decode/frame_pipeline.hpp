@@ -110,8 +110,8 @@ struct PlaneCorrections {
 };
 
 /// Decodes the ready frame, or rows of it, and corrects its planes. With a spatial filter, the
-/// planes `averaged` and `deviation` require FrameSteps::keeps_filtered, and a frame with mixed
-/// pixels is filtered again without them.
+/// plane `averaged` requires FrameSteps::keeps_filtered, and a frame with mixed pixels is filtered
+/// again without them.
 /// @param first_row, rows  submitted rows
 /// @param decoded          planes whose first value belongs to the first row
 /// @throws as FramePipeline::decode()

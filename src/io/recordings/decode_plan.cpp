@@ -157,16 +157,14 @@ int sliding_exposures(const DecodeRequest& request, const DecodingTable& table) 
 Preparation preparation_of(const DecodeRequest& request, const DecodingTable& table,
                            const std::optional<Filter>& filter) {
   const bool is_limited = depth_limits(table, request.min_depth_m, request.max_depth_m).has_value();
-  const auto wants = [&](DecodedPlane plane) {
-    return std::ranges::find(request.outputs, plane) != request.outputs.end();
-  };
+  const bool wants_averaged =
+      std::ranges::find(request.outputs, DecodedPlane::averaged) != request.outputs.end();
   Preparation preparation{
       .steps = {.average = request.average,
                 .averaged = request.averaged,
                 .time_filter = request.time_filter,
                 .filter = filter ? &*filter : nullptr,
-                .keeps_filtered = request.mixed || is_limited || wants(DecodedPlane::averaged) ||
-                                  wants(DecodedPlane::deviation)},
+                .keeps_filtered = request.mixed || wants_averaged || is_limited},
       .find_mixed = request.mixed.has_value(),
       .undistort = request.undistort,
       .stray_kernel = {},
