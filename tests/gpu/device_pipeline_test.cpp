@@ -120,7 +120,7 @@ TEST_F(DevicePipelines, LeaveSmallAndUnfilteredFramesToTheCpuIfAutomatic) {
   };
   const std::unique_ptr<FrameBackend> on =
       automatic_backend(find_device, make_decoder(DecodeMethod::zncc, setup_.decoder.table()), {});
-  const Filter filter(setup_.decoder.table());
+  const Filter filter(setup_.decoder.table(), FilterOptions::of(FilterStrength::light));
   const auto host_bytes = [&](const Filter* in_space, int rows) {
     const FrameSteps steps{.time_filter = TimeFilterOptions{}, .filter = in_space};
     return on->prepare(steps, rows, 1000)->memory(frames).whole;
