@@ -63,11 +63,11 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
   if (!tied.empty() && !camera.operating.multipath && !camera.operating.interference)
     text += "\n  within two standard errors of the best: " + tied +
             " (increase --trials to distinguish them)";
-  for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
-    if (const Candidate* other = result.find(name);
-        other && other != &winner && !camera.operating.interference)
-      text +=
-          fmt::format("\n  {:.2f}x better than {}", gain_over(result, *other, measure).value, name);
+  if (!camera.operating.interference)  // these ratios exclude other cameras
+    for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
+      if (const Candidate* other = result.find(name); other && other != &winner)
+        text += fmt::format("\n  {:.2f}x better than {}", gain_over(result, *other, measure).value,
+                            name);
   for (const Candidate& c : result.candidates)
     if (c.is_designed())
       text += fmt::format("\n  {}: {} ({})", c.code.name(), c.message, time_text(c.seconds));

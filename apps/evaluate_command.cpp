@@ -186,8 +186,7 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
         "interference of {}; interference: rms error without noise, first order; expected rms: "
         "with noise; rms, error: root mean square and mean error of trials; alone: without other "
         "cameras; wrong: more than 3 deviations; wrong ok: the same with status ok; detected: "
-        "share "
-        "of wrong depths with status inconsistent",
+        "share of wrong depths with status inconsistent",
         interference_text(*camera.operating.interference)));
   }
   session.say(

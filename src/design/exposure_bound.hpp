@@ -12,8 +12,8 @@ namespace tofsmith {
 
 /// Cramer-Rao bound of a code as a function of the shares of its exposures in the integration time.
 /// With u_i the derivatives of the measurement rate r_i w.r.t. depth, signal and ambient light,
-///   F = sum_i w_i u_i u_i^T,  w_i = T_i^2 / (T_i v_i + c_i),  sigma = ([F^-1]_zz^-1 + 12 /
-///   R^2)^-1/2.
+///   F = sum_i w_i u_i u_i^T,  w_i = T_i^2 / (T_i v_i + c_i),
+///   sigma = ([F^-1]_zz^-1 + 12 / R^2)^(-1/2).
 /// The term of the range R, the prior information of uniform depths, limits sigma at low light.
 class ExposureBound {
  public:

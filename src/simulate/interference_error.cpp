@@ -8,16 +8,16 @@
 #include <optional>
 #include <vector>
 
+#include "simulate/depth_cells.hpp"
 #include "simulate/interference_light.hpp"
 #include "simulate/pixel_trials.hpp"
-#include "simulate/shared/depth_information.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-/// Variance of a weighted sum of measurements [e^2], separated by its causes.
+/// Variance of a weighted sum of measurements [e^2], by cause.
 struct WeightedNoise {
   double by_signal = 0.0, by_ambient = 0.0;  ///< per e/s
   double floor = 0.0;
@@ -93,25 +93,16 @@ ExpectedErrors::ExpectedErrors(const ForwardModel& model, const Camera& camera,
       (count * (other.second_moment(measuring) - of_mean) + count * count * of_mean);
 
   const Eigen::Index cells = default_cells_per_bin(model) * model.samples();
-  Eigen::MatrixXd signal, slope;
-  middles_and_slopes(
-      model.correlation_table(static_cast<int>(2 * cells)) * model.exposure_s().asDiagonal(),
-      signal, slope);
-  const Eigen::VectorXd ambient =
-      model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera));
-  const Eigen::VectorXd masses = DepthPrior(camera).masses(cells);
   const NoiseOfCells noise(model, cells);
-  for (Eigen::Index j = 0; j < cells; ++j) {
-    const DepthPart<Eigen::VectorXd> depth(slope.row(j), signal.row(j), ambient);
-    if (!(depth.length > 0.0)) continue;  // no depth can be decoded
-    const Eigen::VectorXd weights = depth.across / (depth.length * depth.length);
-    const double mass = masses.size() > 0 ? masses[j] : 1.0 / static_cast<double>(cells);
-    interference_ += mass * std::max(0.0, weights.dot(moment * weights));
-    const WeightedNoise of_cell = noise.at(j, weights);
-    noise_.by_signal += mass * of_cell.by_signal;
-    noise_.by_ambient += mass * of_cell.by_ambient;
-    noise_.floor += mass * of_cell.floor;
-  }
+  for_each_depth_cell(model, camera, cells,
+                      [&](Eigen::Index cell, double mass, const auto&, const auto& part) {
+                        const Eigen::VectorXd weights = part.across / (part.length * part.length);
+                        interference_ += mass * std::max(0.0, weights.dot(moment * weights));
+                        const WeightedNoise of_cell = noise.at(cell, weights);
+                        noise_.by_signal += mass * of_cell.by_signal;
+                        noise_.by_ambient += mass * of_cell.by_ambient;
+                        noise_.floor += mass * of_cell.floor;
+                      });
 }
 
 double ExpectedErrors::rmse_m(const OperatingPoint& point) const {

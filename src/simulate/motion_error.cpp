@@ -6,9 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "camera/shared/depth_prior.hpp"
+#include "simulate/depth_cells.hpp"
 #include "simulate/pixel_trials.hpp"
-#include "simulate/shared/depth_information.hpp"
 
 namespace tofsmith {
 
@@ -32,26 +31,16 @@ MotionBias::MotionBias(const ForwardModel& model, const Camera& camera)
     : mean_share_(Eigen::VectorXd::Zero(model.exposures())),
       mean_product_(Eigen::MatrixXd::Zero(model.exposures(), model.exposures())) {
   const Eigen::Index cells = default_cells_per_bin(model) * model.samples();
-  Eigen::MatrixXd signal, slope;
-  middles_and_slopes(
-      model.correlation_table(static_cast<int>(2 * cells)) * model.exposure_s().asDiagonal(),
-      signal, slope);
-  const Eigen::VectorXd ambient =
-      model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera));
-  const Eigen::VectorXd masses = DepthPrior(camera).masses(cells);
   const Eigen::Index side = model.measurements() / model.exposures();
-  for (Eigen::Index j = 0; j < cells; ++j) {
-    const Eigen::VectorXd by_depth = slope.row(j);
-    const DepthPart<Eigen::VectorXd> depth(by_depth, signal.row(j), ambient);
-    if (!(depth.length > 0.0)) continue;  // no depth can be decoded
-    const Eigen::VectorXd of_measurements =
-        depth.across.cwiseProduct(by_depth) / (depth.length * depth.length);
-    const Eigen::VectorXd share =
-        of_measurements.reshaped(side, model.exposures()).colwise().sum().transpose();
-    const double mass = masses.size() > 0 ? masses[j] : 1.0 / static_cast<double>(cells);
-    mean_share_ += mass * share;
-    mean_product_ += mass * share * share.transpose();
-  }
+  for_each_depth_cell(
+      model, camera, cells, [&](Eigen::Index, double mass, const auto& by_depth, const auto& part) {
+        const Eigen::VectorXd of_measurements =
+            part.across.cwiseProduct(by_depth) / (part.length * part.length);
+        const Eigen::VectorXd share =
+            of_measurements.reshaped(side, model.exposures()).colwise().sum().transpose();
+        mean_share_ += mass * share;
+        mean_product_ += mass * share * share.transpose();
+      });
 }
 
 double MotionBias::rms_m(const Eigen::VectorXd& shift_m) const {

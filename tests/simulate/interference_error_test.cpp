@@ -119,7 +119,7 @@ TEST(Interference, TrialsAgreeWithTheClosedFormOnOtherReceivers) {
   }
 }
 
-// chi(-z) is what a camera measures whose waveforms are played backwards in time.
+// A camera that plays its waveforms backwards in time measures chi(-z).
 TEST(Interference, ReversedDelaysReverseTheBeat) {
   Camera reversed = lit_camera({.frequency_offset_hz = 37.0}), slower = reversed;
   reversed.playback.emplace().reversed = true;
