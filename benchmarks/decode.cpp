@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -16,7 +15,6 @@
 #include "decode_throughput.hpp"
 #include "in_turns.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/units.hpp"
 
 namespace {
 
@@ -35,8 +33,7 @@ void print_throughput(const Options& options, AskedFigures& asked) {
       "One core, {} x {} pixels, Mpixel/s. share: of the speed at which the same numbers are read\n"
       "and as many bytes written, fastest against fastest (median: round by round). d S A: depth,\n"
       "signal, ambient light; d c st: depth, confidence, status; all: these, bins and deviation.\n"
-      "brute: all bins in double, vectorized; k-d tree: nanoflann on the unit directions, float;\n"
-      "times: bins by the decoder against it.\n\n",
+      "brute: all bins in double, vectorized; times: bins by the decoder against it.\n\n",
       frame_width, frame_height);
   DecodeThroughput::print_heading();
   for (const std::string& code : options.codes)
@@ -47,23 +44,6 @@ void print_throughput(const Options& options, AskedFigures& asked) {
           if (!options.quick || light.noise == "medium")
             throughput.print(scene, light, options.rounds, asked);
     }
-}
-
-/// Frames that exceed the last-level cache of most processors.
-void print_from_memory(const Options& options) {
-  fmt::print(
-      "\nOne core, bins of 32 frames at medium noise, from memory to memory, Mpixel/s. share: of "
-      "the\n"
-      "speed at which the same numbers are read and as many bytes written, fastest against "
-      "fastest\n"
-      "and the median; / one: against one frame, which caches may hold.\n\n"
-      "{:<11}{:>2}{:>5}{:>7} {:<7} {:>8} |{:>8} {:>6} {:>6} | {:>5}\n",
-      "code", "K", "rank", "N", "scene", "size", "bin", "share", "median", "/ one");
-  for (const std::string& code : options.codes) {
-    const DecodeThroughput throughput(decode_code(code), 1000);
-    for (const Scene scene : {Scene::planes, Scene::random})
-      throughput.print_from_memory(scene, std::max(3, options.rounds / 5));
-  }
 }
 
 /// One frame on one and several threads, by wall-clock time; for comparison two independent halves
@@ -122,55 +102,11 @@ void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
   }
 }
 
-/// Error of single-precision depths of noise-free pixels.
-void print_depth_error(const std::string& code, AskedFigures& asked) {
-  const int samples = 240, pixels = 200000;
-  const ForwardModel model = forward_model(decode_code(code), samples);
-  const DecodingTable table = decoding_table(decode_code(code), samples);
-  const Decoder decoder(table);
-  const LightLevel light = light_levels[1];
-  for (const bool on_chords : {true, false}) {
-    FastRandom random(11);
-    std::vector<double> depth_bin;
-    std::vector<float> raw;
-    for (int i = 0; i < pixels; ++i) {
-      const double depth = depth_bin.emplace_back(random.uniform(0.0, samples));
-      if (on_chords) {
-        append_pixel(table, depth, light.signal_e_per_s, light.ambient_e_per_s, 0.0, random, raw);
-        continue;
-      }
-      const Return from{light.signal_e_per_s, depth};
-      for (const double e : model.expected_electrons({&from, 1}, light.ambient_e_per_s))
-        raw.push_back(static_cast<float>(e));
-    }
-    std::vector<float> depth_m(static_cast<std::size_t>(pixels));
-    decoder.decode(RawView::interleaved(raw.data(), 1, pixels, table.measurements()),
-                   {.depth_m = depth_m.data()});
-    double largest = 0.0, sum = 0.0;
-    for (std::size_t i = 0; i < depth_m.size(); ++i) {
-      const double error =
-          std::abs(circular_difference(depth_m[i] / table.bin_m(), depth_bin[i], samples));
-      largest = std::max(largest, error);
-      sum += error;
-    }
-    const char* where = on_chords ? "on the chords between bins" : "of the continuous code";
-    fmt::print("{:<11} N = {}, pixels {:<28} largest {:.2e} bin, mean {:.2e} bin\n", code, samples,
-               where, largest, sum / pixels);
-    if (on_chords)
-      asked.at_most(
-          fmt::format("{}, N = {}: largest depth error without noise [bin]", code, samples),
-          largest, 0.02);
-  }
-}
-
 int run(const Options& options) {
   AskedFigures asked;
   print_throughput(options, asked);
-  print_from_memory(options);
   fmt::print("\nBy the clock on the wall, N = 1000, planes, medium noise:\n");
   for (const std::string& code : options.codes) print_cores(code, 8 * options.rounds, asked);
-  fmt::print("\nDepth between bins, in single precision, without noise:\n");
-  for (const std::string& code : options.codes) print_depth_error(code, asked);
   asked.print();
   return 0;
 }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Compares the decoder's bins with a double-precision reference on every instruction set of this
-// machine: branch and bound at N = 240, brute force at finer N. A sample of both is compared with
-// the definition of the decoder. Different bins are a mismatch unless their scores are equal within
-// the rounding of the reference; such ties are counted separately.
+// Compares the decoder's bins with brute force in double precision on every instruction set of this
+// machine. A sample of the reference bins is compared with the definition of the decoder. Different
+// bins are a mismatch unless their scores are equal within the rounding of the reference; such ties
+// are counted separately.
 #include <fmt/format.h>
 #include <hwy/targets.h>
 #include <unistd.h>
@@ -33,12 +33,12 @@ using namespace tofsmith::benchmarks;
 struct Options {
   std::vector<std::string> codes = {"k3", "k4", "k5", "two-bucket", "rank7"};
   std::vector<int> samples = {240, 1000, 10000};
-  double pixels = 1e9;              // at N = 240, in total
-  double brute_force_pixels = 1e7;  // at finer N, per code and target
+  double pixels = 1e9;       // at N = 240, in total
+  double fine_pixels = 1e7;  // at finer N, per code and target
   std::uint64_t seed = 1;
 };
 
-/// Largest N for which the reference is branch and bound.
+/// Largest N that is compared on many pixels.
 constexpr int coarse_samples = 240;
 
 struct Counts {
@@ -54,9 +54,7 @@ class Comparison {
       : table_(decoding_table(code, samples)),
         decoder_(table_),
         curve_(table_),
-        branch_and_bound_(curve_),
-        definition_(table_),
-        is_brute_(samples > coarse_samples) {}
+        definition_(table_) {}
 
   static constexpr int block = 16 * pixels_per_kind;
   static constexpr int blocks = 16;
@@ -76,9 +74,7 @@ class Comparison {
   DecodingTable table_;
   Decoder decoder_;
   ReferenceCurve curve_;
-  BranchAndBound branch_and_bound_;
   ReferenceDecoder definition_;
-  bool is_brute_;
   int pixels_ = 0;
   std::vector<float> raw_;
   std::vector<std::int32_t> expected_;
@@ -98,11 +94,7 @@ void Comparison::make(std::uint64_t seed, int pixels) {
     std::vector<ReferencePixel> projected(count);
     for (std::size_t i = 0; i < count; ++i)
       projected[i] = curve_.project(&raw_[(first + i) * k_count]);
-    if (is_brute_)
-      bins_by_brute_force(curve_, projected.data(), static_cast<int>(count), &expected_[first]);
-    else
-      for (std::size_t i = 0; i < count; ++i)
-        expected_[first + i] = branch_and_bound_.bin(projected[i]);
+    bins_by_brute_force(curve_, projected.data(), static_cast<int>(count), &expected_[first]);
     for (std::size_t i = 0; i < count; ++i)
       if (!projected[i].is_number) expected_[first + i] = -1;
   });
@@ -163,7 +155,7 @@ Counts compare_all_targets(const DecodeCode& code, int samples, const Options& o
   const double of_each =
       samples <= coarse_samples
           ? options.pixels / static_cast<double>(options.codes.size() * targets.size())
-          : options.brute_force_pixels;
+          : options.fine_pixels;
   const auto pixels = static_cast<std::int64_t>(std::ceil(of_each));
   std::vector<Counts> counts(targets.size());
   double reference_s = 0.0;
@@ -194,10 +186,9 @@ Counts compare_all_targets(const DecodeCode& code, int samples, const Options& o
     sum.ties += counts[t].ties;
   }
   fmt::print(
-      "    {:.0f} s, of which {:.0f} s are pixels and reference by {}; {} of its bins held "
-      "against the definition\n",
-      now_s() - start, reference_s, samples <= coarse_samples ? "branch and bound" : "brute force",
-      comparison.held_against_definition());
+      "    {:.0f} s, of which {:.0f} s are pixels and reference; {} of its bins held against the "
+      "definition\n",
+      now_s() - start, reference_s, comparison.held_against_definition());
   std::fflush(stdout);
   return sum;
 }
@@ -233,14 +224,13 @@ int main(int argc, char** argv) {
   app.add_option("--samples", options.samples, "N; any number of them");
   app.add_option("--pixels", options.pixels,
                  "decoded at each N up to 240, over all codes and targets");
-  app.add_option("--brute-force-pixels", options.brute_force_pixels,
-                 "of each code and target at finer N");
+  app.add_option("--fine-pixels", options.fine_pixels, "of each code and target at finer N");
   app.add_option("--seed", options.seed, "of the pixels");
   app.add_flag("--quick", is_quick, "a thousandth of the pixels");
   CLI11_PARSE(app, argc, argv);
   if (is_quick) {
     options.pixels *= 1e-3;
-    options.brute_force_pixels *= 1e-3;
+    options.fine_pixels *= 1e-3;
   }
   try {
     return run(options);

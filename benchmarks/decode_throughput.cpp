@@ -38,19 +38,14 @@ std::vector<float> some_pixels(const std::vector<float>& raw, int measurements, 
 }  // namespace
 
 DecodeThroughput::DecodeThroughput(const DecodeCode& code, int samples)
-    : code_(code),
-      table_(decoding_table(code, samples)),
-      decoder_(table_),
-      curve_(table_),
-      peer_(NearestDirection::make(curve_)) {}
+    : code_(code), table_(decoding_table(code, samples)), decoder_(table_), curve_(table_) {}
 
 void DecodeThroughput::print_heading() {
   fmt::print(
       "{:<11}{:>2}{:>5}{:>7} {:<7}{:<7}|{:>8} {:>6} {:>6} |{:>8} {:>6} |{:>8} {:>6} |"
-      "{:>8} {:>6} |{:>8} {:>6} {:>6} |{:>7} {:>7} |{:>7} {:>7}\n",
+      "{:>8} {:>6} |{:>8} {:>6} {:>6} |{:>7} {:>7}\n",
       "code", "K", "rank", "N", "scene", "noise", "bin", "share", "median", "depth", "share",
-      "d S A", "share", "d c st", "share", "all", "share", "/ bin", "brute", "times", "k-d tree",
-      "times");
+      "d S A", "share", "d c st", "share", "all", "share", "/ bin", "brute", "times");
 }
 
 void DecodeThroughput::print(Scene scene, const LightLevel& light, int rounds,
@@ -77,27 +72,17 @@ void DecodeThroughput::print(Scene scene, const LightLevel& light, int rounds,
                           bins_by_brute_force(curve_, projected.data(), brute_pixels,
                                               planes.bin.data());
                         }});
-  const int peer_pixels = 2048;
-  const std::vector<float> for_peer = some_pixels(raw, k_count, peer_pixels);
-  if (peer_ != nullptr)
-    contenders.push_back({peer_pixels, [&] {
-                            for (int i = 0; i < peer_pixels; ++i)
-                              planes.bin[static_cast<std::size_t>(i)] =
-                                  peer_->bin(curve_.project(for_peer.data() + i * k_count));
-                          }});
   const Turns turns(contenders, rounds);
 
   const auto mpixels = [&](std::size_t i) { return 1e-6 * turns.pixels_per_s(i); };
   const auto share = [&](std::size_t i) { return turns.speed_over(i, i + 1); };
-  const std::size_t bin = 0, all = 8, brute = 10, peer = 11;
+  const std::size_t bin = 0, all = 8, brute = 10;
   fmt::print("{:<11}{:>2}{:>5}{:>7} {:<7}{:<7}|{:>8.1f} {:>6.3f} {:>6.3f} |", code_.name, k_count,
              curve_.rank(), table_.samples(), scene == Scene::planes ? "planes" : "random",
              light.noise, mpixels(bin), share(bin), turns.median_speed_over(bin, bin + 1));
   for (std::size_t i = 2; i < all; i += 2) fmt::print("{:>8.1f} {:>6.3f} |", mpixels(i), share(i));
-  fmt::print("{:>8.1f} {:>6.3f} {:>6.3f} |{:>7.2f} {:>7.1f} |", mpixels(all), share(all),
+  fmt::print("{:>8.1f} {:>6.3f} {:>6.3f} |{:>7.2f} {:>7.1f}\n", mpixels(all), share(all),
              turns.speed_over(all, bin), mpixels(brute), turns.speed_over(bin, brute));
-  if (peer_ != nullptr) fmt::print("{:>7.2f} {:>7.1f}", mpixels(peer), turns.speed_over(bin, peer));
-  fmt::print("\n");
   std::fflush(stdout);
 
   if (light.noise != "medium") return;
@@ -112,34 +97,6 @@ void DecodeThroughput::print(Scene scene, const LightLevel& light, int rounds,
   }
   if (table_.samples() == 10000 && code_.name == "rank7")
     asked.at_least(what + ": bins, speed over brute force", turns.speed_over(bin, brute), 10.0);
-}
-
-void DecodeThroughput::print_from_memory(Scene scene, int rounds) const {
-  constexpr int frames = 32;
-  const int k_count = table_.measurements();
-  const std::vector<float> one = noisy_frame(table_, scene, light_levels[1]);
-  std::vector<float> raw;
-  for (int i = 0; i < frames; ++i) raw.insert(raw.end(), one.begin(), one.end());
-  const int height = frames * frame_height, pixels = frames * frame_pixels;
-  std::vector<std::int32_t> bin(static_cast<std::size_t>(pixels));
-  std::vector<std::int32_t> bin_of_one(frame_pixels);
-  const DecodedView wanted{.bin = bin.data()}, wanted_of_one{.bin = bin_of_one.data()};
-  const RawView view = RawView::interleaved(raw.data(), height, frame_width, k_count);
-  const RawView view_of_one = RawView::interleaved(one.data(), frame_height, frame_width, k_count);
-  const ThreadLimit one_core(1);
-  const Turns turns(
-      {
-          {static_cast<double>(pixels), [&] { decoder_.decode(view, wanted); }},
-          {static_cast<double>(pixels), [&] { read_and_write(raw, k_count, wanted); }},
-          {frame_pixels, [&] { decoder_.decode(view_of_one, wanted_of_one); }},
-      },
-      rounds);
-  fmt::print("{:<11}{:>2}{:>5}{:>7} {:<7} {:>5} MB |{:>8.1f} {:>6.3f} {:>6.3f} | {:>5.2f}\n",
-             code_.name, k_count, curve_.rank(), table_.samples(),
-             scene == Scene::planes ? "planes" : "random",
-             (raw.size() + bin.size()) * sizeof(float) / 1'000'000, 1e-6 * turns.pixels_per_s(0),
-             turns.speed_over(0, 1), turns.median_speed_over(0, 1), turns.speed_over(0, 2));
-  std::fflush(stdout);
 }
 
 }  // namespace tofsmith::benchmarks

@@ -3,11 +3,10 @@
 #pragma once
 
 #include <array>
-#include <memory>
 
 #include "asked_figures.hpp"
 #include "decode_frame.hpp"
-#include "nearest_direction.hpp"
+#include "reference_curve.hpp"
 
 namespace tofsmith::benchmarks {
 
@@ -20,15 +19,11 @@ class DecodeThroughput {
   void print(Scene scene, const LightLevel& light, int rounds, AskedFigures& asked) const;
   static void print_heading();
 
-  /// Prints one line for bins of frames that exceed the caches.
-  void print_from_memory(Scene scene, int rounds) const;
-
  private:
   const DecodeCode& code_;
   DecodingTable table_;
   Decoder decoder_;
   ReferenceCurve curve_;
-  std::unique_ptr<NearestDirection> peer_;
 };
 
 }  // namespace tofsmith::benchmarks

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <map>
 #include <memory>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -160,34 +159,6 @@ class Experiment {
   std::unique_ptr<TrialTile> tile_ = std::make_unique<TrialTile>();
 };
 
-/// Poisson numbers per microsecond, compared with the standard library.
-void print_poisson(int rounds) {
-  fmt::print("\n{:>12}{:>14}{:>14}{:>8}\n", "Poisson mean", "million/s", "std million/s", "times");
-  std::mt19937_64 random(1);
-  std::vector<double> count(trials_per_tile);
-  double total = 0.0;
-  for (const double mean : {0.1, 3.0, 30.0, 1e3, 1e5, 1e7}) {
-    const std::vector<double> means(trials_per_tile, mean);
-    constexpr int tiles = 200;
-    const Turns turns(
-        {{tiles * trials_per_tile,
-          [&] {
-            for (std::uint32_t t = 0; t < tiles; ++t)
-              draw_poisson({1, 0, t * trials_per_tile}, 0, trials_per_tile, means.data(),
-                           count.data());
-          }},
-         {tiles * trials_per_tile,
-          [&] {
-            for (int i = 0; i < tiles * trials_per_tile; ++i)
-              total += static_cast<double>(std::poisson_distribution<std::int64_t>(mean)(random));
-          }}},
-        rounds);
-    fmt::print("{:>12g}{:>14.1f}{:>14.1f}{:>8.1f}\n", mean, 1e-6 * turns.pixels_per_s(0),
-               1e-6 * turns.pixels_per_s(1), turns.speed_over(0, 1));
-  }
-  if (total < 0.0) fmt::print("\n");
-}
-
 }  // namespace
 }  // namespace tofsmith::benchmarks
 
@@ -218,7 +189,6 @@ int main(int argc, char** argv) {
         if (samples == 1000 && noise == NoiseModel::gaussian)
           experiment.print_threads(rounds, asked);
       }
-  print_poisson(rounds);
   asked.print();
   return 0;
 }

@@ -3,8 +3,6 @@
 #include "reference_bins.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "tofsmith/core/error.hpp"
 
@@ -17,10 +15,8 @@
 #ifndef TOFSMITH_BENCHMARKS_RUNS
 #define TOFSMITH_BENCHMARKS_RUNS
 namespace tofsmith::benchmarks {
-inline constexpr int run_blocks = 2;     // blocks of rows per run
 inline constexpr int group_blocks = 16;  // blocks of rows with a common best score
 inline constexpr int max_groups = 128;   // so N <= 16384
-inline constexpr int max_run_blocks = 128;
 inline constexpr int pixels_at_once = 4;
 }  // namespace tofsmith::benchmarks
 #endif
@@ -94,45 +90,6 @@ void brute_force(const double* rows, int blocks, const ReferencePixel* pixels, i
   }
 }
 
-template <int Rank>
-std::int32_t branch_and_bound(const BranchAndBound::View& view, const ReferencePixel& pixel) {
-  const Doubles d;
-  constexpr int stride = Rank * reference_block;
-  const double* const unit = pixel.unit.data();
-  // A sine from a cosine near 1 loses half of its digits; the tolerances account for it.
-  const Vector one = hn::Set(d, 1.0), lost = hn::Set(d, 1e-14), slack = hn::Set(d, 1e-9);
-  HWY_ALIGN double highest[max_run_blocks * reference_block];
-  Vector most = hn::Set(d, -2.0);
-  for (int block = 0; block < view.run_blocks; ++block)
-    for (int i = 0; i < reference_block; i += lanes()) {
-      const int run = block * reference_block + i;
-      const Vector c = scores<Rank>(unit, view.centre + block * stride, i);
-      const Vector cosine = hn::LoadU(d, view.cosine + run), sine = hn::LoadU(d, view.sine + run);
-      const Vector s = hn::Sqrt(hn::Add(hn::Max(hn::Zero(d), hn::NegMulAdd(c, c, one)), lost));
-      const Vector bound = hn::Add(hn::MulAdd(c, cosine, hn::Mul(s, sine)), slack);
-      hn::Store(hn::IfThenElse(hn::Ge(c, cosine), hn::Add(one, slack), bound), d, highest + run);
-      most = hn::Max(most, c);
-    }
-  double best = largest(most);  // centres are directions
-  int candidates[max_run_blocks * reference_block], count = 0;
-  for (int run = 0; run < view.run_blocks * reference_block; ++run)
-    if (highest[run] >= best) candidates[count++] = run;
-
-  Vector reached = hn::Set(d, best);
-  const auto end_of = [&](int run) { return std::min((run + 1) * run_blocks, view.row_blocks); };
-  for (int k = 0; k < count; ++k)
-    for (int block = candidates[k] * run_blocks; block < end_of(candidates[k]); ++block)
-      for (int i = 0; i < reference_block; i += lanes())
-        reached = hn::Max(reached, scores<Rank>(unit, view.row + block * stride, i));
-  best = largest(reached);
-  for (int k = 0; k < count; ++k)
-    for (int block = candidates[k] * run_blocks; block < end_of(candidates[k]); ++block) {
-      const int row = first_row<Rank>(unit, view.row + block * stride, best - pixel.tie);
-      if (row >= 0) return block * reference_block + row;
-    }
-  return -1;
-}
-
 void brute_force_of_rank(int rank, const double* rows, int blocks, const ReferencePixel* pixels,
                          int count, std::int32_t* bin) {
   switch (rank) {
@@ -153,26 +110,6 @@ void brute_force_of_rank(int rank, const double* rows, int blocks, const Referen
   }
 }
 
-std::int32_t branch_and_bound_of_rank(const BranchAndBound::View& view,
-                                      const ReferencePixel& pixel) {
-  switch (view.rank) {
-    case 2:
-      return branch_and_bound<2>(view, pixel);
-    case 3:
-      return branch_and_bound<3>(view, pixel);
-    case 4:
-      return branch_and_bound<4>(view, pixel);
-    case 5:
-      return branch_and_bound<5>(view, pixel);
-    case 6:
-      return branch_and_bound<6>(view, pixel);
-    case 7:
-      return branch_and_bound<7>(view, pixel);
-    default:
-      return branch_and_bound<8>(view, pixel);
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith::benchmarks
 HWY_AFTER_NAMESPACE();
@@ -181,7 +118,6 @@ HWY_AFTER_NAMESPACE();
 namespace tofsmith::benchmarks {
 
 HWY_EXPORT(brute_force_of_rank);
-HWY_EXPORT(branch_and_bound_of_rank);
 
 void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixels, int count,
                          std::int32_t* bin) {
@@ -191,39 +127,6 @@ void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixe
     HWY_DYNAMIC_DISPATCH(brute_force_of_rank)
   (curve.rank(), curve.rows(), curve.blocks(), pixels + first,
    std::min(count - first, pixels_at_once), bin + first);
-}
-
-BranchAndBound::BranchAndBound(const ReferenceCurve& curve) {
-  const int rank = curve.rank(), run_rows = run_blocks * reference_block;
-  const int runs = (curve.samples() + run_rows - 1) / run_rows;
-  const int blocks = (runs + reference_block - 1) / reference_block;
-  require(blocks <= max_run_blocks, "samples", curve.samples(), "must be at most 16384");
-  // Padding repeats the last run and has no rows.
-  const auto entries = static_cast<std::size_t>(blocks * reference_block);
-  centre_.resize(entries * static_cast<std::size_t>(rank));
-  cosine_.assign(entries, 1.0);
-  sine_.assign(entries, 0.0);
-  for (int entry = 0; entry < blocks * reference_block; ++entry) {
-    const int run = std::min(entry, runs - 1);
-    const int begin = run * run_rows, end = std::min(begin + run_rows, curve.samples());
-    const int middle = (begin + end) / 2;
-    ReferencePixel centre;
-    for (int j = 0; j < rank; ++j) {
-      const double component = curve.component(middle, j);
-      centre.unit[static_cast<std::size_t>(j)] = component;
-      centre_[static_cast<std::size_t>((entry / reference_block * rank + j) * reference_block +
-                                       entry % reference_block)] = component;
-    }
-    double& cosine = cosine_[static_cast<std::size_t>(entry)];
-    for (int row = begin; row < end; ++row) cosine = std::min(cosine, curve.score(centre, row));
-    sine_[static_cast<std::size_t>(entry)] = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-  }
-  view_ = {rank,           blocks,       curve.blocks(), centre_.data(),
-           cosine_.data(), sine_.data(), curve.rows()};
-}
-
-std::int32_t BranchAndBound::bin(const ReferencePixel& pixel) const {
-  return HWY_DYNAMIC_DISPATCH(branch_and_bound_of_rank)(view_, pixel);
 }
 
 }  // namespace tofsmith::benchmarks

@@ -139,58 +139,6 @@ def moving(recordings, signals, space):
     print(f"\nworst of the filter in time: {worst:.2f} (asked: at most 1.2)")
 
 
-def boxes(values, side):
-    """Sums over side x side pixels, cropped at the border."""
-    reach = side // 2
-    padded = np.pad(values, ((reach + 1, reach), (reach + 1, reach)))
-    sums = padded.cumsum(0).cumsum(1)
-    rows = sums[side:] - sums[:-side]
-    return rows[:, side:] - rows[:, :-side]
-
-
-def with_what_moved(raw, read_noise_e=20.0, reach=10, side=5):
-    """Averages each pixel with the most similar one of the previous frame, by chi^2 of patches over
-    all shifts of up to `reach` pixels. Pixels without a match within 3 sigma stay unchanged."""
-    found = raw.copy()
-    freedom = side * side * raw.shape[3]
-    shifts = [(y, x) for y in range(-reach, reach + 1) for x in range(-reach, reach + 1)]
-    for frame in range(FIRST, len(raw) - 1):
-        least, alike = np.full(raw.shape[1:3], np.inf), raw[frame - 1].copy()
-        for shift in shifts:
-            shifted = np.roll(raw[frame - 1], shift, (0, 1))
-            variance = np.maximum(raw[frame] + shifted, 0) + 2 * read_noise_e**2
-            chi2 = boxes(((raw[frame] - shifted) ** 2 / variance).sum(2), side)
-            better = chi2 < least
-            least[better], alike[better] = chi2[better], shifted[better]
-        same = least < freedom + 3 * np.sqrt(2 * freedom)
-        found[frame][same] = (raw[frame][same] + alike[same]) / 2
-    return found
-
-
-def searched(recordings, signals):
-    """Errors of moving pixels with a search across frames, relative to individual frames."""
-    print("\n## Moving pixels, each added to the most alike of 21 x 21 in the frame before")
-    print("\nNot a part of tofsmith: error over that of frames alone, median, mean (ideal 0.71)")
-    print("\n| motion | S at 1 m (e/s) | no filter in space | --filter normal |")
-    print("|---|---|---|---|")
-    raw_file = recordings.folder / "raw.npy"
-    for name, motion in MOTIONS.items():
-        for signal in signals:
-            truth, moved = recordings.moving(name, motion, signal, FIRST + 3)
-            raw = np.load(raw_file).astype(np.float64)
-            found = with_what_moved(raw)
-            found[~moved] = raw[~moved]
-            cells = []
-            for space in ((), ("--filter", "normal")):
-                np.save(raw_file, raw.astype(np.float32))
-                alone = recordings.errors_m(truth, *space, read=EXPOSURE)[moved]
-                np.save(raw_file, found.astype(np.float32))
-                errors = recordings.errors_m(truth, *space, read=EXPOSURE)[moved]
-                cells.append(f"{np.median(errors) / np.median(alone):.2f}, "
-                             f"{errors.mean() / alone.mean():.2f}")
-            print(f"| {name} | {signal:g} | " + " | ".join(cells) + " |", flush=True)
-
-
 def means_of_three(recordings, truth, space):
     """Errors of the mean of each frame with its two neighbours [m]."""
     raw_file = recordings.folder / "raw.npy"
@@ -208,8 +156,6 @@ def main():
     parser.add_argument("program", type=Path, help="the command tofsmith")
     parser.add_argument("--optimized", type=Path,
                         help="file of the code optimized-k5 of `tofsmith demo` (hamiltonian-k4)")
-    parser.add_argument("--search", action="store_true",
-                        help="also what a search across frames would do; takes minutes")
     parser.add_argument("--quick", action="store_true", help="one level of light")
     arguments = parser.parse_args()
     code = str(arguments.optimized) if arguments.optimized else "hamiltonian-k4"
@@ -222,8 +168,6 @@ def main():
             static(recordings, (1e5,) if arguments.quick else (1e4, 1e5, 1e6), space)
             print("\nMoving: error over that of frames alone, median, mean")
             moving(recordings, signals, space)
-        if arguments.search:
-            searched(recordings, signals)
 
 
 if __name__ == "__main__":

@@ -86,9 +86,6 @@ endif()
 if(TOFSMITH_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()
-if(TOFSMITH_BUILD_BENCHMARKS)
-  find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)  # an optional peer
-endif()
 if(TOFSMITH_BUILD_PYTHON)
   # Debian's Python, which its packages need: another python3 may be first on PATH. pip passes the
   # interpreter it installs for.

@@ -94,7 +94,6 @@ packages_docs=(
 )
 packages_benchmark=(
   "${packages_build[@]}"
-  libnanoflann-dev  # alternative decoder
   python3-opencv    # depth filters for comparison
 )
 # Requirements of .ci/run: the tests, format and lint.
