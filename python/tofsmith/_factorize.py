@@ -138,12 +138,12 @@ def factorize(
     camera = camera_of(camera)
     targets = target_of(target, camera, normalize)
     callback = _check.progress(progress)
+    given: dict[str, Any] = {**options, "seed": seed}
     chosen = range(_tofsmith.number_of_targets(targets)) if measurements is None else [
         _measurement(each, targets) for each in measurements]
     results = []
     for index in chosen:
-        found = _tofsmith.factorize(
-            targets, index, camera._handle, {**options, "seed": seed}, callback)
+        found = _tofsmith.factorize(targets, index, camera._handle, given, callback)
         found["pairs"] = [_pair(values) for values in found["pairs"]]
         results.append(Factorization(**found))
     return results
@@ -178,9 +178,10 @@ def alternate(
     camera = camera_of(camera)
     targets = target_of(target, camera, normalize)
     weight = _check.number(total_variation_weight, "total_variation_weight")
+    given: dict[str, Any] = {**options, "seed": seed}
     values = _tofsmith.alternate(
         targets, _measurement(measurement, targets), camera._handle,
-        _check.whole(start, "start", 0), weight, {**options, "seed": seed})
+        _check.whole(start, "start", 0), weight, given)
     for name in ("relaxed", "playable"):
         values[name] = tuple(Waveform._of(handle) for handle in values[name])
     return Alternation(**values)
