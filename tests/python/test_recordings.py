@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Depth limits in Python: the same as in recordings, and of the camera."""
+"""Frames in memory are decoded as recordings are, with mixed pixels and depth limits."""
 
 import numpy as np
 import pytest
@@ -9,6 +9,8 @@ import tofsmith as ts
 
 CODE = "multifrequency-4x4-5x4"
 CAMERA = ts.Camera("paper-30x", fundamental_frequency_hz=20e6)
+MIXED = ("hamiltonian-k5", "paper-10f0")
+NEAR_M, FAR_M, EDGE = 3.0, 5.0, 16
 LIMITS = {"min_depth_m": 1.0, "max_depth_m": 2.5}
 
 
@@ -51,3 +53,34 @@ def test_the_working_distance_of_the_camera_is_the_default(raw):
 def test_impossible_limits(raw, limits, message):
     with pytest.raises((TypeError, ValueError), match=message):
         ts.Decoder(CODE, CAMERA).decode(raw, **limits)
+
+
+@pytest.fixture(scope="module")
+def edge():
+    """Near surface on the left, far on the right, and a mixed column between them."""
+    def seen(depth_m):
+        scene = np.full((24, 33), depth_m, np.float32)
+        return ts.capture(scene, *MIXED, signal_e_per_s=1e5, ambient_e_per_s=1e4, falloff=False)
+    near, far = seen(NEAR_M), seen(FAR_M)
+    both = np.where(np.arange(33)[None, :, None] < EDGE, near, far)
+    both[:, EDGE] = 0.6 * near[:, EDGE] + 0.4 * far[:, EDGE]
+    return both
+
+
+@pytest.mark.parametrize("mixed", ["label", "snap", "drop", None])
+def test_filtered_frames_decode_like_recordings(edge, mixed, tmp_path):
+    decoder = ts.Decoder(*MIXED)
+    np.save(tmp_path / "raw.npy", edge)
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "depth.npz", filter="light",
+                             mixed=mixed, outputs=["depth", "status"])
+    expected = np.load(tmp_path / "depth.npz")
+    for filter in ("light", {"strength": "light"}, ts.Filter(*MIXED, strength="light")):
+        found = decoder.decode(edge, filter=filter, mixed=mixed)
+        np.testing.assert_array_equal(found.status, expected["status"].squeeze())
+        np.testing.assert_array_equal(found.depth_m, expected["depth"].squeeze())
+    assert (found.status == ts.PixelStatus.mixed).any() == (mixed is not None)
+
+
+def test_rejects_unknown_handling_of_mixed_pixels(edge):
+    with pytest.raises(ValueError, match="mixed: .*label"):
+        ts.Decoder(*MIXED).decode(edge, mixed="near")
