@@ -20,8 +20,7 @@ floors='' directory=''
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Builds/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --floors) floors=${2:?--floors needs names} && shift ;;
     -*) tofsmith_die "unknown option $1; see --help" ;;

@@ -16,8 +16,7 @@ build="$root/build-demo"
 source "$root/scripts/packages.sh"
 
 if [[ " $* " == *" -h "* || " $* " == *" --help "* ]]; then
-  sed -n '/^# Installs/,/^# Results/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
-  exit 0
+  print_help && exit
 fi
 
 install_packages demo

@@ -21,8 +21,7 @@ lab=''
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Installs/,/^set /s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --with-lab) lab="$root/build-lab/lab.html" && shift ;;
     --build) build=$(realpath "${2:?a directory}") && shift 2 ;;

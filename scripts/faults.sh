@@ -16,8 +16,7 @@ cd "$root"
 source scripts/packages.sh
 
 if [[ "${1:-}" == -h || "${1:-}" == --help ]]; then
-  sed -n '/^# Makes/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-  exit 0
+  print_help && exit
 fi
 install_packages test
 cmake --log-level=WARNING --preset dev >/dev/null

@@ -40,8 +40,7 @@ readers=()
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Runs/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --seconds) seconds=${2:?--seconds needs a number} && shift ;;
     --total) total=$(printf '%.0f' "${2:?--total needs a number}") && shift ;;

@@ -17,8 +17,7 @@ output=''
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Installs/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     -o | --output) output=$(realpath -m "${2:?-o needs a file}") && shift ;;
     *) tofsmith_die "unknown option $1; see --help" ;;

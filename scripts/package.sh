@@ -24,8 +24,7 @@ component='' directory='' lab=yes arch=''
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Installs/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --component) component=${2:?--component needs a name} && shift ;;
     --arch)

@@ -133,6 +133,9 @@ tofsmith_die() {
   exit 1
 }
 
+# Prints the comment at the beginning of the script that was started.
+print_help() { sed -n '5,/^[^#]/{/^#/s/^# \{0,1\}//p}' "$root/scripts/${0##*/}"; }
+
 # Prints the path of the Debian root of a release for scripts/test_release.sh.
 release_root() { printf '%s' "${TOFSMITH_ROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/tofsmith-roots}/$1"; }
 

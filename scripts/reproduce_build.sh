@@ -23,8 +23,7 @@ place='' quick='' what=()
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Builds/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --keep) place=$(realpath -m "${2:?--keep needs a directory}") && mkdir -p "$place" && shift ;;
     --quick) quick=yes ;;

@@ -22,8 +22,7 @@ locale=
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Installs/,/^set /s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --preset) preset=${2:?a preset} && shift 2 ;;
     --locale) locale=${2:?a locale} && shift 2 ;;

@@ -17,8 +17,7 @@ source "$root/scripts/packages.sh"
 
 case "${1:-}" in
   -h | --help)
-    sed -n '/^# Configures/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-    exit 0
+    print_help && exit
     ;;
 esac
 here=

@@ -15,8 +15,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 source "$root/scripts/packages.sh"
 case "${1:-}" in
   -h | --help)
-    sed -n '/^# Runs/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-    exit 0
+    print_help && exit
     ;;
 esac
 build=$(cd "${1:-$root/build-dev}" && pwd)

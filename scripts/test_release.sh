@@ -33,8 +33,7 @@ fresh='' keep='' ccache='' remove=''
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Runs the scripts/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --fresh) fresh=yes ;;
     --keep) keep=yes ;;

@@ -25,8 +25,7 @@ wanted='' directory=''
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Installs/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --python) wanted=${2:?--python needs a version} && shift ;;
     -*) tofsmith_die "unknown option $1; see --help" ;;
