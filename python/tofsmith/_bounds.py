@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray
@@ -19,7 +21,22 @@ def light_of(signal_e_per_s: float, ambient_e_per_s: float) -> tuple[float, floa
     return light[0], light[1]
 
 
-class CramerRaoBound:
+class _Bound:
+    """Base of the bounds."""
+
+    _handle: Any
+
+    def mae_m(
+        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
+    ) -> float:
+        """Returns the mean absolute error over depth [m]; with `uniform_albedo`, also over signals
+        scaled by a factor uniform in (0, 1). Bounds for any code are 0 without impulse responses.
+        """
+        light = light_of(signal_e_per_s, ambient_e_per_s)
+        return self._handle.mae_m(*light, bool(uniform_albedo))
+
+
+class CramerRaoBound(_Bound):
     """Cramer-Rao bound on the depth error of unbiased estimators for one code, with unknown signal
     and ambient light; see docs/bounds.md.
 
@@ -45,16 +62,8 @@ class CramerRaoBound:
         """
         return self._handle.sigma_m(*light_of(signal_e_per_s, ambient_e_per_s))
 
-    def mae_m(
-        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
-    ) -> float:
-        """Returns the mean absolute error over depth [m]; with `uniform_albedo`, also over signals
-        scaled by a factor uniform in (0, 1)."""
-        light = light_of(signal_e_per_s, ambient_e_per_s)
-        return self._handle.mae_m(*light, bool(uniform_albedo))
 
-
-class ReceiverBound:
+class ReceiverBound(_Bound):
     """Bound on the depth error of any code on a camera, for a number of exposures;
     docs/bounds.md."""
 
@@ -62,15 +71,8 @@ class ReceiverBound:
         count = _check.whole(exposures, "exposures", 1, 1_000_000)
         self._handle = _tofsmith.ReceiverBound(camera_of(camera)._handle, count)
 
-    def mae_m(
-        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
-    ) -> float:
-        """Returns the mean absolute error over depth [m]; 0 without impulse responses."""
-        light = light_of(signal_e_per_s, ambient_e_per_s)
-        return self._handle.mae_m(*light, bool(uniform_albedo))
 
-
-class HistogramBound:
+class HistogramBound(_Bound):
     """Lower bound on the depth error of all rows with the light of one exposure, from measuring all
     time bins separately; docs/rows.md.
 
@@ -86,25 +88,10 @@ class HistogramBound:
         camera = camera_of(camera)
         self._handle = _tofsmith.HistogramBound(code_of(code, camera)._handle, camera._handle)
 
-    def mae_m(
-        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
-    ) -> float:
-        """Returns the mean absolute error over depth [m]."""
-        light = light_of(signal_e_per_s, ambient_e_per_s)
-        return self._handle.mae_m(*light, bool(uniform_albedo))
 
-
-class DirectTofBound:
+class DirectTofBound(_Bound):
     """Bound on the depth error of an ideal direct time-of-flight receiver with the camera's
     light."""
 
     def __init__(self, camera: CameraLike) -> None:
         self._handle = _tofsmith.DirectTofBound(camera_of(camera)._handle)
-
-    def mae_m(
-        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
-    ) -> float:
-        """Returns the mean absolute error over depth [m]; 0 if the light has no impulse
-        response."""
-        light = light_of(signal_e_per_s, ambient_e_per_s)
-        return self._handle.mae_m(*light, bool(uniform_albedo))
