@@ -95,8 +95,10 @@ void Comparison::make(std::uint64_t seed, int pixels) {
     for (std::size_t i = 0; i < count; ++i)
       projected[i] = curve_.project(&raw_[(first + i) * k_count]);
     bins_by_brute_force(curve_, projected.data(), static_cast<int>(count), &expected_[first]);
-    for (std::size_t i = 0; i < count; ++i)
-      if (!projected[i].is_number) expected_[first + i] = -1;
+    for (std::size_t i = 0; i < count; ++i) {
+      std::int32_t& bin = expected_[first + i];
+      bin = projected[i].is_number ? table_.nearest_bin(bin) : -1;
+    }
   });
   for (std::size_t i = seed % 997; i < expected_.size(); i += 9973) {  // a sample
     if (expected_[i] < 0) continue;
@@ -113,14 +115,19 @@ bool Comparison::is_tie(std::size_t pixel, std::int32_t found) const {
   if (found < 0 || expected < 0) return false;
   const ReferencePixel reference =
       curve_.project(&raw_[pixel * static_cast<std::size_t>(table_.measurements())]);
-  double best = -1.0;
-  for (int row = 0; row < curve_.samples(); ++row)
-    best = std::max(best, curve_.score(reference, row));
-  // The lower bin is correct if it ties with the best, otherwise the higher one.
   const std::int32_t lower = std::min(found, expected), higher = std::max(found, expected);
-  const double behind = best - curve_.score(reference, lower);
-  return std::abs(behind - reference.tie) <= reference.rounding &&
-         best - curve_.score(reference, higher) <= reference.tie + reference.rounding;
+  double best = -1.0, of_lower = -1.0, of_higher = -1.0;
+  for (int row = 0; row < curve_.samples(); ++row) {
+    const double score = curve_.score(reference, row);
+    best = std::max(best, score);
+    // Tables that a decoder refines have several rows per bin.
+    const std::int32_t bin = table_.nearest_bin(row);
+    if (bin == lower) of_lower = std::max(of_lower, score);
+    if (bin == higher) of_higher = std::max(of_higher, score);
+  }
+  // The lower bin is correct if it ties with the best, otherwise the higher one.
+  return std::abs(best - of_lower - reference.tie) <= reference.rounding &&
+         best - of_higher <= reference.tie + reference.rounding;
 }
 
 Counts Comparison::compare() const {
