@@ -134,7 +134,7 @@ tofsmith_die() {
 }
 
 # Prints the comment at the beginning of the script that was started.
-print_help() { sed -n '5,/^[^#]/{/^#/s/^# \{0,1\}//p}' "$root/scripts/${0##*/}"; }
+print_help() { sed -n '5,/^[^#]/{/^#/s/^# \{0,1\}//p}' "${root:?}/scripts/${0##*/}"; }
 
 # Prints the path of the Debian root of a release for scripts/test_release.sh.
 release_root() { printf '%s' "${TOFSMITH_ROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/tofsmith-roots}/$1"; }
