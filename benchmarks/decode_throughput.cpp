@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <optional>
+#include <type_traits>
 
 #include "in_turns.hpp"
-#include "read_write_limit.hpp"
 #include "reference_bins.hpp"
 #include "tofsmith/core/parallel.hpp"
 
@@ -23,6 +24,32 @@ std::optional<double> asked_share(std::string_view code) {
   if (code == "k4") return 1.0 / 4.0;
   if (code == "k5" || code == "two-bucket") return 1.0 / 6.0;
   return std::nullopt;
+}
+
+/// Reads every raw value and writes every value of the requested planes, a few thousand pixels at a
+/// time: the minimum work of a decoder.
+void read_and_write(const std::vector<float>& raw, int measurements, const DecodedView& planes) {
+  constexpr int block = 4096;
+  const int pixels = static_cast<int>(raw.size()) / measurements;
+  for (int first = 0; first < pixels; first += block) {
+    const int count = std::min(block, pixels - first);
+    const float* numbers = raw.data() + static_cast<std::ptrdiff_t>(first) * measurements;
+    std::uint32_t seen = 0;
+    for (int i = 0; i < count * measurements; ++i) {
+      std::uint32_t bits;
+      std::memcpy(&bits, numbers + i, sizeof bits);
+      seen |= bits;
+    }
+    const auto value = static_cast<std::int32_t>(seen >> 9);
+    for_each_plane(
+        [&]<typename Value>(Value* plane) {
+          if (plane != nullptr)
+            std::fill_n(plane + first, count,
+                        static_cast<Value>(std::is_enum_v<Value> ? value & 1 : value));
+        },
+        planes);
+    asm volatile("" ::: "memory");
+  }
 }
 
 /// Pixels spread over a frame, for slow decoders.
