@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "core/shared/decompositions.hpp"
 #include "decode/search/distinct_directions.hpp"
 #include "decode/search/smooth_curve.hpp"
 #include "decode/shared/saturation_level.hpp"
@@ -111,6 +112,18 @@ Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& covariance) {
   return weight.asDiagonal() * parts.eigenvectors().transpose();
 }
 
+/// Returns W with orthonormal rows and W^T W = 1 - ones / K, in whose coordinates noise with this
+/// covariance is uncorrelated. The first row is 0.
+Eigen::MatrixXd centring_of(const Eigen::MatrixXd& covariance) {
+  const Eigen::Index rows = covariance.rows();
+  const Eigen::MatrixXd basis = complement_of(Eigen::VectorXd::Ones(rows));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(basis.transpose() * covariance *
+                                                             basis);
+  Eigen::MatrixXd centring = Eigen::MatrixXd::Zero(rows, rows);
+  centring.bottomRows(rows - 1) = (basis * parts.eigenvectors()).transpose();
+  return centring;
+}
+
 /// Replaces a packed covariance C by mix C mix^T.
 template <typename Row>
 void mix_pairs(const Eigen::MatrixXd& mix, Row&& packed) {
@@ -125,7 +138,14 @@ void whiten_rows(const ForwardModel& model, const Camera& camera, DecodingTable&
   RowCovariance noise = row_covariance(model, model.samples());
   const OperatingPoint nominal = camera.operating.middle();
   const RowCovariance mean{noise.signal.colwise().mean(), noise.ambient, noise.floor};
-  table.whitening = whitening_of(mean.at(0, nominal.signal_e_per_s, nominal.ambient_e_per_s));
+  const Eigen::MatrixXd nominal_e2 = mean.at(0, nominal.signal_e_per_s, nominal.ambient_e_per_s);
+  table.decoder = camera.sensor.decoder;
+  if (table.decoder == RowDecoder::plain) {
+    table.whitening = centring_of(nominal_e2);
+    table.ambient_gain.setZero();
+  } else {
+    table.whitening = whitening_of(nominal_e2);
+  }
   for (Eigen::Index n = 0; n < noise.signal.rows(); ++n)
     mix_pairs(table.whitening, noise.signal.row(n));
   Eigen::RowVectorXd ambient = noise.ambient, floor = noise.floor;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -17,9 +18,16 @@ namespace {
 
 constexpr int samples = 60;
 
+Camera camera_with(RowDecoder decoder, double signal_e, double ambient_e) {
+  Camera camera = rows_camera(samples, signal_e, ambient_e);
+  camera.sensor.decoder = decoder;
+  return camera;
+}
+
 struct RowsSetup {
-  explicit RowsSetup(const char* name, double signal_e = 2e3, double ambient_e = 1e3)
-      : camera(rows_camera(samples, signal_e, ambient_e)),
+  explicit RowsSetup(const char* name, double signal_e = 2e3, double ambient_e = 1e3,
+                     RowDecoder decoder = RowDecoder::whitened)
+      : camera(camera_with(decoder, signal_e, ambient_e)),
         model(build_family(name, camera), camera),
         table(make_decoding_table(model, camera)),
         weights(model.readout().transpose()),
@@ -100,6 +108,55 @@ TEST(RowsDecoder, FindsTheBinOfTheDefinition) {
   }
 }
 
+/// Bin with the largest zero-mean normalized cross-correlation of unweighted rows.
+int best_plain(const RowsSetup& setup, const Eigen::VectorXd& y) {
+  const auto centred = [](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    return v.array() - v.mean();
+  };
+  int best = 0;
+  double largest = -infinity;
+  for (int z = 0; z < samples; ++z) {
+    const Eigen::VectorXd x = centred(setup.weights.transpose() * setup.light.col(z));
+    const double score = x.dot(centred(y)) / x.norm();
+    // Among bins equal up to rounding, use the first.
+    if (score > largest + 1e-9 * y.norm()) best = z, largest = score;
+  }
+  return best;
+}
+
+TEST(RowsDecoder, PlainFindsTheBinOfTheDefinition) {
+  for (const char* name : names) {
+    const RowsSetup setup(name, 2e3, 1e3, RowDecoder::plain);
+    const Decoder decoder(setup.table);
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      const Eigen::VectorXf raw = setup.pixel(static_cast<double>(seed) * 0.97, 100, 300, seed);
+      std::int32_t found = 0;
+      decoder.decode_bins(raw.data(), 1, &found);
+      EXPECT_EQ(found, best_plain(setup, raw.cast<double>())) << name << " " << seed;
+    }
+  }
+}
+
+TEST(RowsDecoder, PlainEqualsWhitenedIfTheNoiseIsWhite) {
+  // On average over depth, equal gates have equal and independent noise.
+  const RowsSetup whitened("histogram-k5"), plain("histogram-k5", 2e3, 1e3, RowDecoder::plain);
+  const Decoder first(whitened.table), second(plain.table);
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const Eigen::VectorXf raw = whitened.pixel(static_cast<double>(seed) * 0.29, 100, 300, seed);
+    double expected = 0.0, found = 0.0;
+    first.decode_depth_bins(raw.data(), 1, &expected);
+    second.decode_depth_bins(raw.data(), 1, &found);
+    EXPECT_LT(std::abs(circular_difference(found, expected, samples)), 1e-4) << seed;
+  }
+}
+
+TEST(RowsDecoder, MaximumLikelihoodRejectsThePlainDecoder) {
+  const RowsSetup setup("fourier-k6", 2e3, 1e3, RowDecoder::plain);
+  EXPECT_THAT([&] { LikelihoodDecoder decoder(setup.table); },
+              testing::ThrowsMessage<InvalidArgument>(
+                  testing::HasSubstr("sensor.decoder = plain; must be \"whitened\"")));
+}
+
 TEST(RowsDecoder, RecoversEveryDepthWithoutNoise) {
   for (const char* name : names)
     for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml}) {
@@ -177,6 +234,8 @@ TEST(RowsDecoder, PredictedDeviationsMatchTheNoise) {
   EXPECT_NEAR(deviation_ratio(signal, LikelihoodDecoder(signal.table)), 1.0, 0.15);
   EXPECT_NEAR(deviation_ratio(ambient, LikelihoodDecoder(ambient.table)), 1.0, 0.15);
   EXPECT_NEAR(deviation_ratio(ambient, Decoder(ambient.table)), 1.0, 0.15);
+  const RowsSetup plain("fourier-k6", 2e4, 2e5, RowDecoder::plain);
+  EXPECT_NEAR(deviation_ratio(plain, Decoder(plain.table)), 1.0, 0.15);
   // With signal-dominated noise the covariance varies with depth. zncc neglects this and
   // overestimates the deviation.
   EXPECT_NEAR(deviation_ratio(signal, Decoder(signal.table)), 1.25, 0.25);

@@ -38,6 +38,13 @@ enum class Readout {
 };
 inline constexpr std::array<std::string_view, 3> readouts = {"separate", "difference", "rows"};
 
+/// Coordinates in which zncc compares rows.
+enum class RowDecoder {
+  whitened,  ///< in which the noise at the middle operating point is white
+  plain,     ///< rows minus their mean, unweighted: for receivers that cannot whiten
+};
+inline constexpr std::array<std::string_view, 2> row_decoders = {"whitened", "plain"};
+
 /// Factor by which the sensor multiplies the light.
 enum class Demodulation {
   gain,    ///< in [0, 1], of taps that collect charge
@@ -94,6 +101,7 @@ struct Sensor {
   std::optional<double> shortest_pulse_s;
   bool drain = true;
   Readout readout = Readout::separate;
+  RowDecoder decoder = RowDecoder::whitened;  ///< for Readout::rows
   Demodulation demodulation = Demodulation::gain;
   std::optional<double> readout_gap_s;                     ///< none: 0
   std::optional<double> frame_period_s;                    ///< none: duration of the exposures
@@ -165,6 +173,11 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                     "which are weighted sums of the light in the time bins of one exposure")
                     .basic(),
                 sensor.readout, readouts);
+  fields.choice(Key("decoder",
+                    "Coordinates in which zncc compares rows: whitened, with white noise, or "
+                    "plain, the rows minus their mean")
+                    .only(sensor.readout == Readout::rows, "readout = \"rows\""),
+                sensor.decoder, row_decoders);
   fields.choice(
       Key("demodulation", "Gain of taps in [0, 1], or signed weight of a mixer in [-1, 1]"),
       sensor.demodulation, demodulations);

@@ -122,7 +122,8 @@ constexpr std::int32_t nearest_bin_of_row(std::int32_t row, std::int64_t rows, s
 ///
 /// For Readout::rows, whose noise is correlated, all shot terms and constant_variance_e2 are
 /// variances of the whitened measurements W (electrons - dark), with W = `whitening`. Their
-/// covariance is diagonal at one nominal light level.
+/// covariance is diagonal at one nominal light level. For RowDecoder::plain, W is orthogonal except
+/// that it removes the mean over rows, and ambient_gain is 0.
 struct DecodingTable : MeasurementTable {
   Eigen::VectorXd exposure_s;      ///< T (K), each > 0
   Eigen::VectorXd dark_electrons;  ///< without light [e] (K)
@@ -147,6 +148,7 @@ struct DecodingTable : MeasurementTable {
   Eigen::MatrixXd whitening;  ///< W (K, K); empty: noise is independent
   /// Covariance of the whitened measurements; empty without whitening.
   RowCovariance covariance;
+  RowDecoder decoder = RowDecoder::whitened;
   /// Subtracted by apply() from decoded depths, for frames of one size.
   std::optional<DepthCorrection> correction = {};
   /// As DecodeOptions::model_error_percent; the larger of both applies.
@@ -178,8 +180,9 @@ struct DecodingTable : MeasurementTable {
 
 /// Builds the table of a code on a camera. Raw numbers are counts if the camera has an ADC,
 /// otherwise electrons. Differences of buckets are differences of converted values, clipped at the
-/// ends of the converter's range; a clipped bucket within this range cannot be detected. Rows are
-/// whitened by their covariance at the camera's middle operating point, averaged over depth.
+/// ends of the converter's range; a clipped bucket within this range cannot be detected. Unless
+/// the decoder of the camera is plain, rows are whitened by their covariance at the middle
+/// operating point, averaged over depth.
 DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera);
 
 /// Returns the table of the whitened measurements W (electrons - dark), which decodes them to the

@@ -12,6 +12,7 @@
 #include "decode/raw_scale.hpp"
 #include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
@@ -52,6 +53,8 @@ struct LikelihoodDecoder::Plan {
 LikelihoodDecoder::LikelihoodDecoder(DecodingTable table, const DecodeOptions& options) {
   options.validate();
   table.validate();
+  require(table.decoder == RowDecoder::whitened, "sensor.decoder", "plain",
+          "must be \"whitened\" for ml, which takes the correlation of the noise into account");
   const DecodingTable white = whitened(table);
   const AmbientProjection projection(white);
   plan_ = std::make_unique<const Plan>(std::move(table), options, white, projection);
