@@ -94,6 +94,39 @@ TEST(RowDesign, MinimizesTheSelectedStatistic) {
   EXPECT_LT(rmse_of_rows_for(ErrorStatistic::rmse), 0.9 * rmse_of_rows_for(ErrorStatistic::mae));
 }
 
+Camera with_decoder(Camera camera, RowDecoder decoder) {
+  camera.sensor.decoder = decoder;
+  return camera;
+}
+
+TEST(RowDesign, RowsForThePlainDecoderSumToZero) {
+  const Camera camera = with_decoder(small_camera(), RowDecoder::plain);
+  for (const int rows : {3, 6, 8}) {
+    const CodeSet code = row_candidates(camera, rows, quick(rows), {}).front().code;
+    const Eigen::MatrixXd weights = code.demodulation_samples();
+    ASSERT_EQ(weights.cols(), rows);
+    EXPECT_LT(weights.rowwise().sum().cwiseAbs().maxCoeff(), 1e-12);
+    // Thus, and because their noise is white, whitening has no effect.
+    const EvaluateOptions judging{.trials = 2000, .bounds = false};
+    const double whitened_m =
+        evaluate(code, small_camera(), judging).circular.geometric_mean_m.value;
+    EXPECT_NEAR(evaluate(code, camera, judging).circular.geometric_mean_m.value, whitened_m,
+                1e-3 * whitened_m);
+  }
+}
+
+TEST(RowDesign, WinsWithTheDecoderForWhichItIsDesigned) {
+  const Camera usual = camera_of(240, 300, 3000, 100e6);
+  const Camera plain = with_decoder(usual, RowDecoder::plain);
+  const DesignOptions options = with_effort({}, 0.3);
+  const EvaluateOptions judging{.trials = 20000, .bounds = false};
+  const auto plain_error_m = [&](const Camera& designed_on) {
+    const CodeSet code = row_candidates(designed_on, 8, options, {}).front().code;
+    return evaluate(code, plain, judging).circular.geometric_mean_m.value;
+  };
+  EXPECT_LT(plain_error_m(plain), plain_error_m(usual));
+}
+
 TEST(RowDesign, ReportsAStandardCodeThatIsBetterInDimLight) {
   const Camera camera = camera_of_many_lobes();
   DesignResult result;

@@ -16,6 +16,7 @@
 #include <set>
 
 #include "camera/shared/listed_exposures.hpp"
+#include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "core/shared/random.hpp"
 #include "design/judge.hpp"
@@ -49,6 +50,12 @@ constexpr std::array final_rounds = {FinalRound{6, 30}, FinalRound{3, 100}};
 
 using Tones = std::vector<int>;
 
+/// Returns the number of cosines and sines. The plain decoder removes the mean over rows, so that
+/// all information must be in rows whose sum is 0.
+int rows_of_tones(const Camera& camera, int rows) {
+  return camera.sensor.decoder == RowDecoder::plain ? rows - 1 : rows;
+}
+
 struct ToneCode {
   Tones tones;
   Eigen::VectorXd light;  // (N)
@@ -63,7 +70,8 @@ class ToneSearch {
   ToneSearch(const Camera& camera, int rows)
       : camera_(camera),
         dim_(in_share_of_light(camera, dim_share)),
-        rows_(rows),
+        read_rows_(rows),
+        rows_(rows_of_tones(camera, rows)),
         samples_(camera.samples),
         highest_(std::max(1, samples_ / min_bins_per_period)),
         transform_(samples_),
@@ -126,7 +134,9 @@ class ToneSearch {
 
   CodeSet code_set(const ToneCode& code) const {
     const Waveform light = Waveform::binary_from_samples(code.light, code.light.maxCoeff());
-    return CodeSet::create_rows(rows_name(rows_), light, weights_of(code.tones));
+    Eigen::MatrixXd weights = weights_of(code.tones).rightCols(rows_);
+    if (rows_ < read_rows_) weights *= complement_of(Eigen::VectorXd::Ones(read_rows_)).transpose();
+    return CodeSet::create_rows(rows_name(read_rows_), light, weights);
   }
 
  private:
@@ -136,9 +146,10 @@ class ToneSearch {
                       highest_);
   }
 
+  /// Cosine and sine of each tone. An odd number of rows lacks the first cosine.
   Eigen::MatrixXd weights_of(const Tones& tones) const {
-    Eigen::MatrixXd weights(samples_, rows_);
-    for (int k = 0; k < rows_; ++k) {
+    Eigen::MatrixXd weights(samples_, 2 * static_cast<Eigen::Index>(tones.size()));
+    for (int k = 0; k < weights.cols(); ++k) {
       const std::int64_t tone = tones[static_cast<std::size_t>(k / 2)];
       for (int n = 0; n < samples_; ++n) {
         // Centre of the bin, in half samples.
@@ -209,8 +220,12 @@ class ToneSearch {
     const Eigen::MatrixXd weights = weights_of(code.tones);
     const Eigen::MatrixXd weighed = weights.transpose() * share.asDiagonal() * weights;
     const Eigen::MatrixXd constant = weights.transpose() * weights / samples_;
-    const Eigen::VectorXd mean = weights.transpose() * share;
-    const Eigen::VectorXd slope = slope_of(code.tones, mean);
+    Eigen::VectorXd mean = weights.transpose() * share;
+    Eigen::VectorXd slope = slope_of(code.tones, mean);
+    if (rows_ % 2 == 1) {  // one row of a tone has half the information of two, averaged over depth
+      mean.head(2) *= std::sqrt(0.5);
+      slope.head(2) *= std::sqrt(0.5);
+    }
 
     const auto error_m = [&](const OperatingPoint& point) {
       const double signal_e = exposure_s * camera_.operating.albedo * point.signal_e_per_s;
@@ -228,8 +243,7 @@ class ToneSearch {
       const double variance_e2 = 0.5 * (signal_e + other_e) + read_e2;
       Eigen::VectorXd power(static_cast<Eigen::Index>(code.tones.size()));
       for (Eigen::Index i = 0; i < power.size(); ++i)
-        power[i] = mean.segment(2 * i, std::min<Eigen::Index>(2, rows_ - 2 * i)).squaredNorm() *
-                   signal_e * signal_e / variance_e2;
+        power[i] = mean.segment(2 * i, 2).squaredNorm() * signal_e * signal_e / variance_e2;
       if (camera_.operating.statistic == ErrorStatistic::rmse)
         return std::min(std::sqrt(local_rms_m * local_rms_m + lobes(code.tones, power, 2)),
                         range_m / std::sqrt(12.0));
@@ -246,12 +260,11 @@ class ToneSearch {
     code.dim_foreseen_m = mean_m(dim_);
   }
 
-  /// Derivative per period of depth, from the mean (K) at depth 0.
+  /// Derivative per period of depth, from the mean at depth 0.
   Eigen::VectorXd slope_of(const Tones& tones, const Eigen::VectorXd& mean) const {
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_);
-    for (int k = 0; k < rows_; ++k) {
+    Eigen::VectorXd slope(mean.size());
+    for (int k = 0; k < slope.size(); ++k) {
       const int other = k % 2 == 0 ? k + 1 : k - 1;
-      if (other >= rows_) continue;  // without a sine row the slope is unknown: 0
       slope[k] = (k % 2 == 0 ? -2 : 2) * pi * tones[static_cast<std::size_t>(k / 2)] * mean[other];
     }
     return slope;
@@ -289,7 +302,7 @@ class ToneSearch {
 
   const Camera& camera_;
   Camera dim_;
-  int rows_, samples_, highest_;
+  int read_rows_, rows_, samples_, highest_;
   PeriodicTransform transform_;
   Eigen::VectorXcd response_;  // of both arms, all harmonics of the bins
   Eigen::VectorXd transfer_;   // |H_n| of arms and bins
@@ -377,10 +390,11 @@ std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows) {
     return broken("light.peak_factor", camera.light.peak_factor,
                   "must be > 1 to design rows: constant light cannot measure depth");
   if (auto others = other_exposures_listed(camera, 1)) return others;
-  if (const int highest = camera.samples / min_bins_per_period; highest < (rows + 1) / 2)
+  const int tones = (rows_of_tones(camera, rows) + 1) / 2;
+  if (camera.samples / min_bins_per_period < tones)
     return broken(
         "samples", camera.samples,
-        fmt::format("must be >= {} to design {} rows", min_bins_per_period * (rows + 1) / 2, rows));
+        fmt::format("must be >= {} to design {} rows", min_bins_per_period * tones, rows));
   return std::nullopt;
 }
 
