@@ -189,11 +189,11 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
         "share of wrong depths with status inconsistent",
         interference_text(*camera.operating.interference)));
   }
-  session.say(
-      fmt::format("{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is "
-                  "one standard error; factors in parentheses are circular error / bound",
-                  trials_text(codes, options), options.seed, camera.samples,
-                  true_depths_text(camera, options), name_of(options.method)));
+  session.say(fmt::format(
+      "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}{}; ± is "
+      "one standard error; factors in parentheses are circular error / bound",
+      trials_text(codes, options), options.seed, camera.samples, true_depths_text(camera, options),
+      camera.sensor.decoder == RowDecoder::plain ? "plain " : "", name_of(options.method)));
   session.say(depth_error_legend);
   if (codes.front().error.points.size() > 2 && !every_level)
     session.say(fmt::format("to print all {}, use --every-level or -o FILE (.csv .json .html)",
@@ -320,6 +320,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                    "families or code files (.code.json .npz .csv, or a pair LIGHT.npy,GATES.npy)")
       ->required();
   arguments->camera.add_to(*command);
+  arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder");
   arguments->camera.add_key_option(*command, "operating.velocity_m_per_s", "--velocity");
   arguments->camera.add_key_option(*command, "operating.interference.cameras", "--interference");
   const FieldOptions options(*command, arguments->options);

@@ -13,6 +13,7 @@
 #include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "printed_text.hpp"
+#include "tap_arguments.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/unusual_numbers.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -112,6 +113,15 @@ void CameraArguments::add_key_option(CLI::App& command, const std::string& key,
   const std::string_view unit = unit_of_key(key);
   std::string help = full_help(unit, described->key.help, "", "");
   help.front() = static_cast<char>(help.front() - 'A' + 'a');  // keys begin with a capital letter
+  if (described->type == ValueType::choice) {
+    command
+        .add_option_function<std::string>(
+            name,
+            [this, key](const std::string& word) { key_settings_.push_back(key + "=" + word); },
+            help)
+        ->check(one_of(described->words));
+    return;
+  }
   const Range range = described->key.range;
   command
       .add_option_function<double>(

@@ -82,7 +82,7 @@ struct CameraArguments {
   void add_to(CLI::App& command);
   /// Adds `--temperature` and `--sensor-temperature`.
   void add_temperature_to(CLI::App& command);
-  /// Adds an option for one key, with the help, unit and range of the key.
+  /// Adds an option for one key, a number or a choice, with the help, unit and range of the key.
   /// @param key  "operating.velocity_m_per_s"
   void add_key_option(CLI::App& command, const std::string& key, const std::string& name);
   /// Adds a positional CAMERA.

@@ -11,12 +11,12 @@ the response).
     benchmarks/rows.py --gated          8 exposures of one tap instead of rows, 100 photons in total
     benchmarks/rows.py --least SIGMA    smallest Cramer-Rao bounds of 4, 5 and 6 tones; needs NumPy
 
-Circular errors [mm] by zero-mean normalized cross-correlation: mean absolute errors and, in columns
-called rms, root mean square errors. `learned` and `gates` are published mean absolute errors of
-learned codes and of codes of separate exposures converted to rows. `histogram` is the bound of all
-1024 bins with our light. At a tenth of the light our codes are compared with a truncated Fourier
-series. With --codes, your codes are evaluated on the same trials: FOLDER/SIGMA-P-RATIO/light.npy
-and rows.npy, for example 10-none-1 or 5-.015-.1.
+Circular errors [mm] by normalized cross-correlation (with --decoder plain: of rows that are not
+whitened): mean absolute errors and, in columns called rms, root mean square errors. `learned` and
+`gates` are published mean absolute errors of learned codes and of codes of separate exposures
+converted to rows. `histogram` is the bound of all 1024 bins with our light. At a tenth of the light
+our codes are compared with a truncated Fourier series. With --codes, your codes are evaluated on
+the same trials: FOLDER/SIGMA-P-RATIO/light.npy and rows.npy, for example 10-none-1 or 5-.015-.1.
 """
 
 import argparse
@@ -47,16 +47,18 @@ CELLS = [
 ASKED = .93  # limit of the ratio to the better of learned and gates
 
 
-def camera_toml(sigma_bins, peak, signal_to_background, photons, readout="rows"):
+def camera_toml(sigma_bins, peak, signal_to_background, photons, readout="rows", decoder=None):
     """The response exp(-(t / sigma)^2) is a Gaussian with an attenuation of 3 dB at its cutoff."""
     sigma_s = sigma_bins / (SAMPLES * FREQUENCY_HZ)
     cutoff_hz = math.sqrt(.5 * math.log(2)) / (math.pi * sigma_s)
     response = f'{{ kind = "gaussian", cutoff_hz = {cutoff_hz!r} }}'
     peak_factor = SAMPLES if peak is None else peak * SAMPLES
-    again = "" if peak is None else f"impulse_response = {response}\n"
+    sensor = "" if peak is None else f"impulse_response = {response}\n"
+    if decoder is not None:
+        sensor += f'decoder = "{decoder}"\n'
     return (f"fundamental_frequency_hz = {FREQUENCY_HZ}\nexposure_s = 1\nsamples = {SAMPLES}\n"
             f"[light]\npeak_factor = {peak_factor}\nimpulse_response = {response}\n"
-            f'[sensor]\nreadout = "{readout}"\nread_noise_e = 0\n{again}'
+            f'[sensor]\nreadout = "{readout}"\nread_noise_e = 0\n{sensor}'
             f"[operating]\nsignal_e_per_s = [{photons}]\n"
             f"ambient_e_per_s = [{photons / signal_to_background}]\nerror = \"circular\"\n")
 
@@ -132,8 +134,9 @@ def compare_rows(tool, chosen, photons, arguments):
             sigma, peak, learned, gates = CELLS[cell]
             for i, ratio in enumerate(RATIOS):
                 camera, dim = (Path(folder) / f"{cell}-{i}{end}.toml" for end in ("", "-dim"))
-                camera.write_text(camera_toml(sigma, peak, ratio, photons))
-                dim.write_text(camera_toml(sigma, peak, ratio, photons / 10))
+                for path, light in ((camera, photons), (dim, photons / 10)):
+                    path.write_text(camera_toml(sigma, peak, ratio, light,
+                                                decoder=arguments.decoder))
                 out = Path(folder) / f"{cell}-{i}"
                 begin = time.monotonic()
                 run(tool, "design", str(camera), "--method", "optimize", "--exposures",
@@ -189,6 +192,8 @@ def main():
     parser.add_argument("--trials", type=int, default=20000)
     parser.add_argument("--effort", default="1")
     parser.add_argument("--method", default="zncc", choices=["zncc", "ml"])
+    parser.add_argument("--decoder", default="whitened", choices=["whitened", "plain"],
+                        help="for --method zncc")
     parser.add_argument("--cells", default="", help="numbers of cells, from 0; all")
     parser.add_argument("--codes", nargs="*", default=[], help="folders of codes of yours")
     parser.add_argument("--gated", action="store_true", help="separate exposures of one tap")

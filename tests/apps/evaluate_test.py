@@ -94,6 +94,18 @@ class Evaluate(CommandLineTest):
         self.do(*ml, "-o", "e.html")
         self.assertIn(b"ml / zncc", self.bytes_of("e.html"))
 
+    def test_the_decoder_of_rows_is_a_key_of_the_camera(self):
+        rows = ("evaluate", "fourier-k5", "--camera", "paper-10f0", *FAST, "--set",
+                "sensor.readout=rows", "--set", "sensor.read_noise_e=0")
+        whitened, plain = self.do_json(*rows), self.do_json(*rows, "--decoder", "plain")
+        self.assertEqual(plain, self.do_json(*rows, "--set", "sensor.decoder=plain"))
+        self.assertEqual(whitened, self.do_json(*rows, "--decoder", "whitened"))
+        self.assertEqual(plain["camera"]["sensor"]["decoder"], "plain")
+        self.assertGreater(plain["codes"][0]["circular"]["geometric_mean_m"],
+                           whitened["codes"][0]["circular"]["geometric_mean_m"])
+        self.refuse((*rows, "--decoder", "white"), "--decoder", "white", "whitened", "plain", code=2)
+        self.refuse((*rows, "--decoder", "plain", "--method", "ml"), "sensor.decoder", "ml")
+
     def test_motion_is_reported_for_a_velocity(self):
         bright = ("evaluate", "sinusoid-k4", "hamiltonian-k5", *FAST, "--set",
                   "operating.signal_e_per_s=[1e5]", "--set", "operating.ambient_e_per_s=[1e3]")

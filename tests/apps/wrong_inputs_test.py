@@ -134,6 +134,8 @@ evaluate sinusoid-k4 --set light.peak_factr=5 | did you mean light.peak_factor?
 evaluate sinusoid-k4 --set peak_factor=5 | peak_factor
 evaluate sinusoid-k4 --set fundamental_frequency_hz=20kg | 20kg
 evaluate sinusoid-k4 --set exposure_s | key = value
+evaluate sinusoid-k4 --decoder plain | sensor.decoder; only valid with readout = "rows"
+design paper-10f0 --decoder ml | --decoder: ml not in; whitened; plain
 evaluate sinusoid-k4 --trials 0 | --trials; found 0
 evaluate sinusoid-k4 --trials 1.5 | --trials; 1.5
 evaluate sinusoid-k4 --trials lots | --trials; lots
