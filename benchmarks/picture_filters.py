@@ -57,7 +57,7 @@ MESHES = {"mesh-hand": "meshes/hand_lowres.obj", "mesh-spot": "meshes/spot_low_r
 
 
 class Camera:
-    """Runs the command line with the default camera."""
+    """Runs the command line with the camera paper-10f0."""
 
     def __init__(self, program, directory):
         self.program, self.directory = program, directory
@@ -74,8 +74,8 @@ class Camera:
         has no surface.
         """
         raw, truth = self.directory / "raw.npy", self.directory / "truth.npy"
-        self.run("simulate", *scene, "--code", code, "--signal", signal, "--ambient", ambient,
-                 "-o", raw, "--truth", truth, *options)
+        self.run("simulate", *scene, "--code", code, "--camera", "paper-10f0", "--signal", signal,
+                 "--ambient", ambient, "-o", raw, "--truth", truth, *options)
         truth = np.load(truth)
         truth = (truth[0] if truth.ndim == 3 else truth).astype(np.float64)
         return raw, np.where(truth > 0, truth, np.nan)
@@ -87,9 +87,9 @@ class Camera:
 
     def is_ok(self, raw, code, *options):
         """Returns the mask of pixels with status ok."""
-        self.run("decode", raw, "--code", code, "-o", self.directory / "depth.npy", "--outputs",
-                 "depth,status", *options)
-        return np.load(self.directory / "depth-status.npy").squeeze() == 0
+        decoded = self.directory / "status.npz"
+        self.run("decode", raw, "--code", code, "-o", decoded, "--outputs", "status", *options)
+        return np.load(decoded)["status"].squeeze() == 0
 
     def table(self, code, samples=1000):
         """Returns the measurements (N, K) of a signal of 1 e/s at `samples` depths of the range."""
