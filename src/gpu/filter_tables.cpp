@@ -50,10 +50,13 @@ class Constants {
     add("LIT_BARS", static_cast<int>(lit_bars.size()));
     add("LIT_DIRECTIONS", lit_directions);
     add("LIT_PIXEL_SIGMA", lit_pixel_sigma);
-    add("LIT_BAR_SIGMA", lit_bar_sigma);
     add("LIT_BAR_SHARE", lit_bar_share);
     add("LIT_AROUND_SIGMA", lit_around_sigma);
     add("LIT_EXCESS_SIGMA", lit_excess_sigma);
+    add("LIT_SMALL_BARS", lit_small_bars);
+    add("LIT_BRIGHT_SHARE", lit_bright_share);
+    add("LIT_BRIGHT_SIGMA", lit_bright_sigma);
+    add("LIT_BRIGHT_REACH", lit_bright_reach);
   }
   const std::string& text() const { return text_; }
 
@@ -109,6 +112,7 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("BALANCED_ENERGY", balanced_energy);
   c.add("EVIDENT_SIGMA", evident_sigma);
   c.add("LIT_ALONE_SHARE", lit_alone_share);
+  c.add("LIT_BAR_SIGMA", plan.lit_bar_sigma());
   c.add("EDGE_BIAS_FROM", edge_bias.from);
   c.add("EDGE_BIAS_FULL", edge_bias.full);
   c.add("EDGE_BIAS_NEAR", edge_bias.near);

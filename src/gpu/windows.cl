@@ -382,8 +382,9 @@ kernel void find_own_amplitude(const struct FilterParameters p, const struct Res
   const float square = added_square(&p, &r, planes, at);
   const bool is_known = square > 0.0f && plane_of(&p, planes, PLANE_USABLE)[at] > 0.5f;
   const float length = sqrt(square) * sqrt(plane_of(&p, planes, PLANE_VARIANCE)[at]);
-  plane_of(&p, planes, PLANE_AMPLITUDE)[at] =
-      is_known ? along_added(&p, &r, planes, at, at) / length : 0.0f;
+  const float along = product_plus(-(float)(RANK - 1), plane_of(&p, planes, r.last_variance)[at],
+                                   along_added(&p, &r, planes, at, at));
+  plane_of(&p, planes, PLANE_AMPLITUDE)[at] = is_known ? along / length : 0.0f;
 }
 
 /// As least_of_bars() on the CPU.
@@ -407,6 +408,25 @@ float least_of_bars(const struct FilterParameters* p, Plane amplitude, int at, i
   return least;
 }
 
+/// As mean_around() on the CPU.
+float mean_around(const struct FilterParameters* p, Plane amplitude, int at) {
+  float sum = 0.0f;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) sum += amplitude[at + dy * p->stride + dx];
+  return sum * (1.0f / 9.0f);
+}
+
+/// As brightest_around() on the CPU.
+float brightest_around(const struct FilterParameters* p, Plane amplitude, int at) {
+  float brightest = -1e30f;
+  for (int dy = -LIT_BRIGHT_REACH; dy <= LIT_BRIGHT_REACH; ++dy)
+    for (int dx = -LIT_BRIGHT_REACH; dx <= LIT_BRIGHT_REACH; ++dx) {
+      const float mean = mean_around(p, amplitude, at + dy * p->stride + dx);
+      brightest = LARGER(brightest, mean);
+    }
+  return brightest;
+}
+
 /// As find_lit_share().
 float lit_share(const struct FilterParameters* p, const struct ResultParameters* r,
                 global float* planes, int at) {
@@ -416,15 +436,17 @@ float lit_share(const struct FilterParameters* p, const struct ResultParameters*
   const float square = added_square(p, r, planes, at);
   const float added = sqrt(square) / sqrt(plane_of(p, planes, PLANE_VARIANCE)[at]);
   const float most = added + LIT_EXCESS_SIGMA;
-  float around = 0.0f;
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) around += amplitude[at + dy * p->stride + dx];
+  const float around = mean_around(p, amplitude, at);
   const bool is_alone = plane_of(p, planes, PLANE_REJECTED)[at] > LIT_ALONE_SHARE;
-  const bool is_lit_around = !is_alone && (added <= LIT_AROUND_SIGMA ||
-                                           around * (1.0f / 9.0f) >= added * LIT_BAR_SHARE);
+  bool can_be_lit =
+      !is_alone && (added <= LIT_AROUND_SIGMA || around >= added * LIT_BAR_SHARE);
   int point = 0, scale = 0;
   for (int bar = 0; bar < LIT_BARS; ++bar) {
-    if (is_lit_around && added <= lit_max_added[bar]) {
+    if (bar == LIT_SMALL_BARS && can_be_lit) {
+      const float above = brightest_around(p, amplitude, at) - LIT_BRIGHT_SIGMA;
+      can_be_lit = around >= above * LIT_BRIGHT_SHARE;
+    }
+    if (can_be_lit && added <= lit_max_added[bar]) {
       const float of_added = added * (LIT_BAR_SHARE / lit_scales[scale]);
       const float least = least_of_bars(p, amplitude, at, bar, point, scale, most);
       const float enough = added * lit_enough[bar];

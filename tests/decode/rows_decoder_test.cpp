@@ -18,7 +18,7 @@ namespace {
 
 constexpr int samples = 60;
 
-Camera camera_with(RowDecoder decoder, double signal_e, double ambient_e) {
+Camera rows_camera_with(RowDecoder decoder, double signal_e, double ambient_e) {
   Camera camera = rows_camera(samples, signal_e, ambient_e);
   camera.sensor.decoder = decoder;
   return camera;
@@ -27,7 +27,7 @@ Camera camera_with(RowDecoder decoder, double signal_e, double ambient_e) {
 struct RowsSetup {
   explicit RowsSetup(const char* name, double signal_e = 2e3, double ambient_e = 1e3,
                      RowDecoder decoder = RowDecoder::whitened)
-      : camera(camera_with(decoder, signal_e, ambient_e)),
+      : camera(rows_camera_with(decoder, signal_e, ambient_e)),
         model(build_family(name, camera), camera),
         table(make_decoding_table(model, camera)),
         weights(model.readout().transpose()),

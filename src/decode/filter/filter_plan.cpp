@@ -323,7 +323,7 @@ void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int 
   float* const amplitude = frame.scalar(FilterPlanes::signal_next);
   for_each_row(frame, [&](int row) {
     float* const here = amplitude + row * frame.grid.stride;
-    find_own_amplitude(test, frame.grid, row, here);
+    find_own_amplitude(test, frame.scalar(last_variance()), frame.grid, row, here);
     std::fill(here + frame.grid.width, here + frame.grid.stride, 0.0f);
   });
   const LitTest lit{
@@ -331,6 +331,7 @@ void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int 
       .amplitude = amplitude,
       .variance = frame.scalar(last_variance()),
       .rejected = options.slope_rounds > 0 ? frame.scalar(FilterPlanes::rejected) : nullptr,
+      .bar_sigma = lit_bar_sigma(),
       .points = frame.lit_points.data()};
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t start = row * frame.grid.stride;

@@ -41,6 +41,9 @@ struct Filter::Plan {
   bool has_own_shot_noise = false;  // from light that cancels in the measurements
 
   int samples() const { return decoder.table().samples(); }
+  float lit_bar_sigma() const {
+    return options.slope_rounds > 0 ? lit_bar_sigma_far : lit_bar_sigma_near;
+  }
   FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
 
   /// Bias that the variance of a window of similar pixels includes: that of the result. Passes

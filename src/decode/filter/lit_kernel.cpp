@@ -18,15 +18,17 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
-                        float* amplitude) {
+void find_own_amplitude(const OwnLightTest& test, const float* variance, const FilterGrid& grid,
+                        int row, float* amplitude) {
+  const Vector across = all(static_cast<float>(test.rank - 1));
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
     const Vector square = added_square(test, at);
     const Mask is_known =
         hn::And(hn::Gt(square, hn::Zero(Floats())), hn::Gt(load(test.usable + at), all(0.5f)));
     const Vector length = hn::Mul(hn::Sqrt(square), hn::Sqrt(load(test.variance + at)));
-    store(hn::IfThenElseZero(is_known, hn::Div(along_added(test, at, at), length)), amplitude + x);
+    const Vector along = hn::NegMulAdd(across, load(variance + at), along_added(test, at, at));
+    store(hn::IfThenElseZero(is_known, hn::Div(along, length)), amplitude + x);
   }
 }
 
@@ -54,6 +56,14 @@ HWY_INLINE Vector mean_around(const float* amplitude, std::ptrdiff_t stride) {
   return hn::Mul(sum, all(1.0f / 9.0f));
 }
 
+HWY_INLINE Vector brightest_around(const float* amplitude, std::ptrdiff_t stride) {
+  Vector brightest = all(-1e30f);
+  for (int dy = -lit_bright_reach; dy <= lit_bright_reach; ++dy)
+    for (int dx = -lit_bright_reach; dx <= lit_bright_reach; ++dx)
+      brightest = hn::Max(brightest, mean_around(amplitude + dy * stride + dx, stride));
+  return brightest;
+}
+
 using LitScales = std::array<std::array<float, lit_reach + 1>, lit_bars.size()>;
 
 LitScales lit_scales() {
@@ -65,12 +75,13 @@ LitScales lit_scales() {
 }
 
 HWY_INLINE Mask is_lit_by_bars(const float* amplitude, const std::ptrdiff_t* points,
-                               const LitBar& bar, const float* scale, Vector added) {
+                               const LitBar& bar, const float* scale, Vector added,
+                               float bar_sigma) {
   const Vector most = hn::Add(added, all(lit_excess_sigma));
   const Vector least = least_of_bars(amplitude, points, bar, scale, most);
   const Vector of_added = hn::Mul(added, all(lit_bar_share / scale[0]));
   const Vector enough = hn::Mul(added, all(bar.enough_share / scale[bar.depth - 1]));
-  return hn::Ge(least, hn::Max(hn::Min(all(lit_bar_sigma), enough), of_added));
+  return hn::Ge(least, hn::Max(hn::Min(all(bar_sigma), enough), of_added));
 }
 
 void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share) {
@@ -88,20 +99,25 @@ void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float*
     }
     const Vector square = added_square(*test.light, at);
     const Vector added = hn::Div(hn::Sqrt(square), hn::Sqrt(load(test.light->variance + at)));
-    const Mask is_lit_around =
-        hn::Or(hn::Le(added, all(lit_around_sigma)),
-               hn::Ge(mean_around(amplitude, grid.stride), hn::Mul(added, all(lit_bar_share))));
+    const Vector around = mean_around(amplitude, grid.stride);
+    const Mask is_lit_around = hn::Or(hn::Le(added, all(lit_around_sigma)),
+                                      hn::Ge(around, hn::Mul(added, all(lit_bar_share))));
     const Mask is_alone =
         hn::Gt(test.rejected ? load(test.rejected + at) : hn::Zero(Floats()), all(lit_alone_share));
-    const Mask can_be_lit = hn::AndNot(is_alone, is_lit_around);
+    Mask can_be_lit = hn::AndNot(is_alone, is_lit_around);
     const std::ptrdiff_t* points = test.points;
     for (std::size_t b = 0; b < lit_bars.size(); ++b) {
       const LitBar& bar = lit_bars.data()[b];
+      if (b == lit_small_bars && !hn::AllFalse(Floats(), hn::AndNot(is_lit, can_be_lit))) {
+        const Vector above =
+            hn::Sub(brightest_around(amplitude, grid.stride), all(lit_bright_sigma));
+        can_be_lit = hn::And(can_be_lit, hn::Ge(around, hn::Mul(above, all(lit_bright_share))));
+      }
       const Mask is_open =
           hn::And(hn::AndNot(is_lit, can_be_lit), hn::Le(added, all(bar.max_added_sigma)));
       if (!hn::AllFalse(Floats(), is_open)) {
         const Mask is_lit_here =
-            is_lit_by_bars(amplitude, points, bar, scales.data()[b].data(), added);
+            is_lit_by_bars(amplitude, points, bar, scales.data()[b].data(), added, test.bar_sigma);
         is_lit = hn::Or(is_lit, hn::And(is_open, is_lit_here));
       }
       points += lit_directions * bar.depth * bar.length;
@@ -146,9 +162,9 @@ float lit_bar_scale(const LitBar& bar, int rows) {
   return 1.0f / std::sqrt(static_cast<float>(bar.length * rows));
 }
 
-void find_own_amplitude(const OwnLightTest& test, const FilterGrid& grid, int row,
-                        float* amplitude) {
-  HWY_DYNAMIC_DISPATCH(find_own_amplitude)(test, grid, row, amplitude);
+void find_own_amplitude(const OwnLightTest& test, const float* variance, const FilterGrid& grid,
+                        int row, float* amplitude) {
+  HWY_DYNAMIC_DISPATCH(find_own_amplitude)(test, variance, grid, row, amplitude);
 }
 
 void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share) {
