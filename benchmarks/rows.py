@@ -199,6 +199,8 @@ def main():
     parser.add_argument("--gated", action="store_true", help="separate exposures of one tap")
     parser.add_argument("--least", type=float, metavar="SIGMA", help="bounds of all sets of tones")
     arguments = parser.parse_args()
+    if arguments.gated and arguments.decoder != "whitened":
+        parser.error("--decoder is for rows: omit it with --gated")
     if arguments.least:
         least_bounds(arguments.least)
         return

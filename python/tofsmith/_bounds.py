@@ -30,7 +30,7 @@ class _Bound:
         self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
     ) -> float:
         """Returns the mean absolute error over depth [m]; with `uniform_albedo`, also over signals
-        scaled by a factor uniform in (0, 1). Bounds for any code are 0 without impulse responses.
+        scaled by a factor uniform in (0, 1).
         """
         light = light_of(signal_e_per_s, ambient_e_per_s)
         return self._handle.mae_m(*light, bool(uniform_albedo))
@@ -64,8 +64,8 @@ class CramerRaoBound(_Bound):
 
 
 class ReceiverBound(_Bound):
-    """Bound on the depth error of any code on a camera, for a number of exposures;
-    docs/bounds.md."""
+    """Bound on the depth error of any code on a camera, for a number of exposures; docs/bounds.md.
+    It is 0 without impulse responses."""
 
     def __init__(self, camera: CameraLike, exposures: int) -> None:
         count = _check.whole(exposures, "exposures", 1, 1_000_000)
@@ -90,8 +90,8 @@ class HistogramBound(_Bound):
 
 
 class DirectTofBound(_Bound):
-    """Bound on the depth error of an ideal direct time-of-flight receiver with the camera's
-    light."""
+    """Bound on the depth error of an ideal direct time-of-flight receiver with the camera's light.
+    It is 0 if the light has no impulse response."""
 
     def __init__(self, camera: CameraLike) -> None:
         self._handle = _tofsmith.DirectTofBound(camera_of(camera)._handle)

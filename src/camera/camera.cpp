@@ -76,6 +76,8 @@ void validate_sensor(const Sensor& sensor) {
   validate_adc(sensor);
   if (sensor.integration_times_s)
     require_distinct("sensor.integration_times_s", *sensor.integration_times_s);
+  require(sensor.decoder == RowDecoder::whitened || sensor.readout == Readout::rows,
+          "sensor.decoder", "plain", "is only valid with sensor.readout = \"rows\"");
   require(sensor.drain || sensor.mixes_taps(), "sensor.drain", "false",
           "requires sensor.taps >= 2: a single tap that is always open does not measure depth");
   require(sensor.readout != Readout::difference || sensor.taps == 2, "sensor.readout", "difference",

@@ -27,6 +27,7 @@ Camera ideal_camera(const Camera& camera) {
   Camera ideal = camera;
   ideal.sensor.taps = 1;
   ideal.sensor.readout = Readout::separate;
+  ideal.sensor.decoder = RowDecoder::whitened;
   ideal.sensor.modulation_contrast = 1.0;
   ideal.sensor.modulation_contrasts.clear();
   ideal.light.peak_factor = 1e6;

@@ -122,8 +122,8 @@ constexpr std::int32_t nearest_bin_of_row(std::int32_t row, std::int64_t rows, s
 ///
 /// For Readout::rows, whose noise is correlated, all shot terms and constant_variance_e2 are
 /// variances of the whitened measurements W (electrons - dark), with W = `whitening`. Their
-/// covariance is diagonal at one nominal light level. For RowDecoder::plain, W is orthogonal except
-/// that it removes the mean over rows, and ambient_gain is 0.
+/// covariance is diagonal at one nominal light level. For RowDecoder::plain, the first row of W is
+/// 0, the others are orthonormal with sums of 0, and ambient_gain is 0.
 struct DecodingTable : MeasurementTable {
   Eigen::VectorXd exposure_s;      ///< T (K), each > 0
   Eigen::VectorXd dark_electrons;  ///< without light [e] (K)
@@ -148,7 +148,7 @@ struct DecodingTable : MeasurementTable {
   Eigen::MatrixXd whitening;  ///< W (K, K); empty: noise is independent
   /// Covariance of the whitened measurements; empty without whitening.
   RowCovariance covariance;
-  RowDecoder decoder = RowDecoder::whitened;
+  RowDecoder decoder = RowDecoder::whitened;  ///< of rows; how W was selected
   /// Subtracted by apply() from decoded depths, for frames of one size.
   std::optional<DepthCorrection> correction = {};
   /// As DecodeOptions::model_error_percent; the larger of both applies.

@@ -42,7 +42,8 @@ struct Filter::Plan {
 
   int samples() const { return decoder.table().samples(); }
   float lit_bar_sigma() const {
-    return options.slope_rounds > 0 ? lit_bar_sigma_far : lit_bar_sigma_near;
+    const bool is_near = options.windows == 1 && options.slope_rounds == 0;
+    return is_near ? lit_bar_sigma_near : lit_bar_sigma_far;
   }
   FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
 

@@ -31,8 +31,8 @@ inline constexpr int lit_reach = [] {
 static_assert(lit_reach <= slope_reach, "bars must end within the margins of planes");
 /// Amplitude of a pixel's own measurements that proves its light [standard deviations].
 inline constexpr float lit_pixel_sigma = 3.5f;
-/// Amplitude of a bar that proves light [standard deviations], after averaging over a window of 5 x
-/// 5 pixels, and after averaging along slopes, which adds light of pixels farther away.
+/// Amplitude of a bar that proves light [standard deviations], after averaging over one window of
+/// 5 x 5 pixels, and after further averaging, which adds light of pixels farther away.
 inline constexpr float lit_bar_sigma_near = 3.0f, lit_bar_sigma_far = 4.0f;
 /// Minimum light of each bar, and of the mean of 3 x 3 pixels, relative to the added light.
 inline constexpr float lit_bar_share = 0.6f;
@@ -80,7 +80,8 @@ struct LitTest {
 /// Writes for each pixel of a row 1 if it is lit or not usable, else v / (v + |u|^2) with the added
 /// light u and its variance v: all of u may be light of neighbours. A pixel is lit if its own
 /// measurements prove it, or if the bars in all directions have light: next to an object, the bar
-/// that points away from it has none. Writes whole vectors.
+/// that points away from it has none. In dark gaps (lit_bright_share) only the smallest bars count,
+/// and above lit_alone_share of rejected neighbours none. Writes whole vectors.
 void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float* share);
 
 }  // namespace tofsmith

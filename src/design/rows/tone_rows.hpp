@@ -12,7 +12,8 @@
 
 namespace tofsmith {
 
-/// Two rows of one tone, and one to resolve its ambiguity.
+/// Two rows of one tone, and one for its ambiguity or, with a plain decoder, for the mean over
+/// rows.
 constexpr int min_designed_rows = 3;
 
 std::vector<int> designable_rows(const DesignOptions& options);
@@ -23,9 +24,10 @@ std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows);
 /// Designs rows and light jointly for a camera that reads rows; returns one code to be ranked.
 ///
 /// Rows are cosines and sines of a few tones. Depth rotates them without changing their norm, so
-/// all depths have similar errors. Sets of tones are drawn around the most informative tone
-/// (largest n |H_n|) and improved by single steps. The predicted error is the Cramer-Rao bound at
-/// one depth, with the covariance of the rows, plus the side-lobe error
+/// all depths have similar errors. With an odd number, the lowest tone has a sine only. Sets of
+/// tones are drawn around the most informative tone (largest n |H_n|) and improved by single steps.
+/// The predicted error is the Cramer-Rao bound at one depth, with the covariance of the rows, plus
+/// the side-lobe error
 ///   sum_lobes 2 |u| R Q(sqrt(g(u) / 2)), g(u) = sum_n q_n (1 - cos 2 pi n u),
 ///   q_n = (S |M_n|)^2 / variance of a row in constant light.
 /// For operating.statistic = "rmse", it is the square root of the squared bound plus the same sum
