@@ -230,7 +230,7 @@ void add_decode_command(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("decode", "decode depth from raw measurements");
   add_recording_options(*command, *arguments);
   arguments->camera.add_to(*command);
-  arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder");
+  arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder")->group(for_experts);
   arguments->camera.add_temperature_to(*command);
   arguments->taps.add_to(*command);
   arguments->table.add_to(*command);

@@ -201,7 +201,7 @@ void add_design_command(CLI::App& app, Session& session) {
   options.add("exposures", "--exposures")->allow_extra_args();
   add_effort(*command, arguments->effort);
   options.add("atlas_cameras", "--atlas-cameras");
-  arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder");
+  arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder")->group(for_experts);
   options.add("robust", "--robust");
   options.add("split_exposures", "--split-exposures");
   arguments->multipath.add_to(*command, arguments->options.optimize);

@@ -320,7 +320,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                    "families or code files (.code.json .npz .csv, or a pair LIGHT.npy,GATES.npy)")
       ->required();
   arguments->camera.add_to(*command);
-  arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder");
+  arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder")->group(for_experts);
   arguments->camera.add_key_option(*command, "operating.velocity_m_per_s", "--velocity");
   arguments->camera.add_key_option(*command, "operating.interference.cameras", "--interference");
   const FieldOptions options(*command, arguments->options);

@@ -105,25 +105,23 @@ void CameraArguments::add_temperature_to(CLI::App& command) {
       ->group(for_experts);
 }
 
-void CameraArguments::add_key_option(CLI::App& command, const std::string& key,
-                                     const std::string& name) {
+CLI::Option* CameraArguments::add_key_option(CLI::App& command, const std::string& key,
+                                             const std::string& name) {
   const std::vector<KeyDescription> keys = describe_camera_keys(Camera());
   const auto described = std::ranges::find(keys, key, &KeyDescription::name);
   TOFSMITH_ASSERT_EQ(described != keys.end(), true);
   const std::string_view unit = unit_of_key(key);
   std::string help = full_help(unit, described->key.help, "", "");
   help.front() = static_cast<char>(help.front() - 'A' + 'a');  // keys begin with a capital letter
-  if (described->type == ValueType::choice) {
-    command
+  if (described->type == ValueType::choice)
+    return command
         .add_option_function<std::string>(
             name,
             [this, key](const std::string& word) { key_settings_.push_back(key + "=" + word); },
             help)
         ->check(one_of(described->words));
-    return;
-  }
   const Range range = described->key.range;
-  command
+  return command
       .add_option_function<double>(
           name,
           [this, key](double value) { key_settings_.push_back(fmt::format("{}={}", key, value)); },

@@ -84,7 +84,7 @@ struct CameraArguments {
   void add_temperature_to(CLI::App& command);
   /// Adds an option for one key, a number or a choice, with the help, unit and range of the key.
   /// @param key  "operating.velocity_m_per_s"
-  void add_key_option(CLI::App& command, const std::string& key, const std::string& name);
+  CLI::Option* add_key_option(CLI::App& command, const std::string& key, const std::string& name);
   /// Adds a positional CAMERA.
   void add_positional(CLI::App& command);
   /// @throws IoError; UsageError for a temperature if the camera lacks its keys

@@ -106,6 +106,17 @@ class Evaluate(CommandLineTest):
         self.refuse((*rows, "--decoder", "white"), "--decoder", "white", "whitened", "plain", code=2)
         self.refuse((*rows, "--decoder", "plain", "--method", "ml"), "sensor.decoder", "ml")
 
+        self.do("simulate", "wall", "--width", "40", "--height", "30", "--code", "fourier-k5",
+                *rows[2:4], *rows[-4:], "--signal", "1e4", "--ambient", "1e4", "-o", "rows.npy")
+
+        def depths(*options):
+            self.do("decode", "rows.npy", *options, "-o", "depth.npy", "--force")
+            return self.bytes_of("depth.npy")
+
+        self.assertEqual(depths("--decoder", "plain"), depths("--set", "sensor.decoder=plain"))
+        self.assertEqual(depths("--decoder", "whitened"), depths())
+        self.assertNotEqual(depths("--decoder", "plain"), depths())
+
     def test_motion_is_reported_for_a_velocity(self):
         bright = ("evaluate", "sinusoid-k4", "hamiltonian-k5", *FAST, "--set",
                   "operating.signal_e_per_s=[1e5]", "--set", "operating.ambient_e_per_s=[1e3]")

@@ -252,10 +252,9 @@ TEST(Filter, GivesNoDepthWhereThereIsNoLight) {
         return Seen{80.0, is_dark(y, x) ? 0.0 : signal};
       });
       const FoundShares alone = found_shares(setup.decoder.decode(raw), is_dark);
-      std::vector<FilterOptions> filters = {{.slope_rounds = 0}};
-      for (const FilterStrength strength : all_filter_strengths)
-        filters.push_back(options_of(strength));
-      for (const FilterOptions& options : filters) {
+      for (const FilterOptions& options :
+           {FilterOptions{.slope_rounds = 0}, options_of(FilterStrength::light),
+            options_of(FilterStrength::normal), options_of(FilterStrength::strong)}) {
         const std::string setting =
             fmt::format("windows {}, slope rounds {}, S = {}, scene {}", options.windows,
                         options.slope_rounds, signal, &is_dark - scenes.data());

@@ -6,6 +6,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "core/shared/random.hpp"
 #include "rows_setup.hpp"
@@ -27,8 +30,11 @@ Camera rows_camera_with(RowDecoder decoder, double signal_e, double ambient_e) {
 struct RowsSetup {
   explicit RowsSetup(const char* name, double signal_e = 2e3, double ambient_e = 1e3,
                      RowDecoder decoder = RowDecoder::whitened)
-      : camera(rows_camera_with(decoder, signal_e, ambient_e)),
-        model(build_family(name, camera), camera),
+      : RowsSetup(build_family(name, rows_camera_with(decoder, signal_e, ambient_e)),
+                  rows_camera_with(decoder, signal_e, ambient_e)) {}
+  RowsSetup(const CodeSet& code, Camera given)
+      : camera(std::move(given)),
+        model(code, camera),
         table(make_decoding_table(model, camera)),
         weights(model.readout().transpose()),
         light(samples, samples) {
@@ -124,15 +130,30 @@ int best_plain(const RowsSetup& setup, const Eigen::VectorXd& y) {
   return best;
 }
 
+/// Rows of different sums, so that ambient light differs between them.
+CodeSet rows_of_unequal_sums() {
+  Eigen::VectorXd light = Eigen::VectorXd::Zero(samples);
+  light.head(4).setOnes();
+  Eigen::MatrixXd weights(samples, 5);
+  for (int k = 0; k < 5; ++k)
+    for (int n = 0; n < samples; ++n)
+      weights(n, k) =
+          0.3 * k + std::cos(2.0 * std::numbers::pi * (k / 2 + 1) * (n + 17.0 * k) / samples);
+  return CodeSet::create_rows("unequal-k5", light, weights);
+}
+
 TEST(RowsDecoder, PlainFindsTheBinOfTheDefinition) {
-  for (const char* name : names) {
-    const RowsSetup setup(name, 2e3, 1e3, RowDecoder::plain);
+  const Camera camera = rows_camera_with(RowDecoder::plain, 2e3, 1e3);
+  std::vector<CodeSet> codes = {rows_of_unequal_sums()};
+  for (const char* name : names) codes.push_back(build_family(name, camera));
+  for (const CodeSet& code : codes) {
+    const RowsSetup setup(code, camera);
     const Decoder decoder(setup.table);
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
       const Eigen::VectorXf raw = setup.pixel(static_cast<double>(seed) * 0.97, 100, 300, seed);
       std::int32_t found = 0;
       decoder.decode_bins(raw.data(), 1, &found);
-      EXPECT_EQ(found, best_plain(setup, raw.cast<double>())) << name << " " << seed;
+      EXPECT_EQ(found, best_plain(setup, raw.cast<double>())) << code.name() << " " << seed;
     }
   }
 }

@@ -27,11 +27,13 @@ nested = {
     ts.FilterOptions: lambda o: ts.Filter("hamiltonian-k4", "paper-10f0", options=o),
     ts.ReturnPrior: lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath={"prior": o}),
 }
-# #: Structs without a description, their functions, and the fields specified in other ways.
+# #: Structs whose functions list the keywords, their headers, and the fields specified in other ways.
 keywords = [
-    ("DelaySweepOptions", ts.read_delay_sweep,
+    ("ResponseCalibrationOptions", "impulse_response.hpp", ts.calibrate_impulse_response,
+     {"fundamental_frequency_hz", "samples"}),
+    ("DelaySweepOptions", "correlation_calibration.hpp", ts.read_delay_sweep,
      {"unit_scale", "fundamental_frequency_hz", "samples", "table"}),
-    ("CorrelationCalibrationOptions", ts.calibrate_correlation,
+    ("CorrelationCalibrationOptions", "correlation_calibration.hpp", ts.calibrate_correlation,
      {"taps", "differences", "range_m", "exposure_s"}),
 ]
 
@@ -44,9 +46,10 @@ def test_described_options_are_those_that_are_accepted(kind):
     assert known == [option.name for option in OPTIONS[kind]]
 
 
-@pytest.mark.parametrize("struct, function, elsewhere", keywords, ids=[k[0] for k in keywords])
-def test_every_field_is_a_keyword(struct, function, elsewhere):
-    text = (headers / "calibrate" / "correlation_calibration.hpp").read_text()
+@pytest.mark.parametrize("struct, header, function, elsewhere", keywords,
+                         ids=[k[0] for k in keywords])
+def test_every_field_is_a_keyword(struct, header, function, elsewhere):
+    text = (headers / "calibrate" / header).read_text()
     body = re.search(rf"\nstruct {struct} {{\n(.*?)\n}};", text, re.DOTALL).group(1)
     fields = re.findall(r"^  [\w:<>*]+ (\w+)\s*(?:=[^;]*)?;", re.sub("//.*", "", body), re.MULTILINE)
     assert fields and set(fields) - elsewhere <= set(inspect.signature(function).parameters)
