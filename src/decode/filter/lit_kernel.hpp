@@ -41,7 +41,7 @@ inline constexpr float lit_around_sigma = 1.4f;
 /// The amplitude of each pixel of a bar is limited to that of the added light plus this [standard
 /// deviations].
 inline constexpr float lit_excess_sigma = 2.0f;
-/// Bars that are not affected by the following limit: the first ones.
+/// The first bars, to which the following limit does not apply.
 inline constexpr int lit_small_bars = 1;
 /// Larger bars would bridge dark gaps between bright surfaces. They require that the mean of the
 /// 3 x 3 pixels around a pixel is at least this share of the brightest such mean nearby, minus its
