@@ -89,21 +89,20 @@ class Study:
             writer.writeheader()
             writer.writerows(rows)
 
-    def redesigned(self, exposures: int, camera: Camera, fast: bool | None = None) -> CodeSet:
+    def redesigned(self, exposures: int, camera: Camera) -> CodeSet:
         """Returns the Hamiltonian code with `exposures` exposures, redesigned for the camera as in
         the paper: its correlation functions are factorized within the camera's limits, and the
         resulting code with the smallest depth error is selected. Stored in `codes` for other
         figures."""
-        fast = self.fast if fast is None else fast
-        inputs = f"{tofsmith.__version__} {exposures} {fast} {self.seed}\n{camera.to_toml()}"
+        inputs = f"{tofsmith.__version__} {exposures} {self.fast} {self.seed}\n{camera.to_toml()}"
         name = f"hamiltonian-k{exposures}-{camera.name}-{digest_of(inputs.encode())}.code.json"
         file = self.output / "codes" / name
         if file.exists():
             return tofsmith.read_code(file)
         result = tofsmith.design(
             camera, method="factorize", exposures=exposures, baselines=[], seed=self.seed,
-            search_trials=100 if fast else 4000, trials=1000 if fast else 20000,
-            factorize={"random_starts": 4, "refined": 4, "kept": 2} if fast else None)
+            search_trials=self.pick(4000, 100), trials=self.pick(20000, 1000),
+            factorize=self.pick(None, {"random_starts": 4, "refined": 4, "kept": 2}))
         code = result.winner.code.renamed(f"hamiltonian-k{exposures}-redesigned")
         file.parent.mkdir(parents=True, exist_ok=True)
         tofsmith.write_code(file, code, overwrite=True)

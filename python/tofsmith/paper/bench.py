@@ -20,7 +20,7 @@ def scanning_codes(study: Study) -> tuple[Camera, list[CodeSet]]:
     camera = Camera("prototype")
     signals = [SCAN_POWER_MW * signal for signal in camera.operating.signal_e_per_s]
     camera = camera.replace(name="prototype-10mw", operating={"signal_e_per_s": signals})
-    codes = [study.redesigned(exposures, camera, fast=False) for exposures in (4, 5)]
+    codes = [study.redesigned(exposures, camera) for exposures in (4, 5)]
     return camera, codes + [tofsmith.build_family(name, camera) for name in BASELINES]
 
 

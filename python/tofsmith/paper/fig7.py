@@ -73,7 +73,7 @@ def reproduce(study: Study) -> None:
     trials = []
     for limits, (peak, f_max) in LIMITS.items():
         camera = paper_camera(peak, f_max)
-        codes = [study.redesigned(4, camera, fast=False)]
+        codes = [study.redesigned(4, camera)]
         codes += [tofsmith.build_family(name, camera) for name in BASELINES]
         for name, light in LIGHTS.items():
             decoded_m = [decoded_depths(hand, code, camera, light, frames=1, seed=study.seed,
