@@ -8,8 +8,10 @@ files are written. Only long computations are shortened.
 
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -23,7 +25,7 @@ from command_line import TOOL  # noqa: E402
 from sweep_text import sweep_text  # noqa: E402
 
 SHORTER = {" design ": " design --effort 0.01 --trials 1000 ",
-           " require ": " require --trials 1000 --vary power ",
+           " --vary bandwidth ": " --trials 1000 --vary power --max-factor 2 ",
            " reproduce all ": " reproduce fig5 --fast ",
            " --bounces 1 ": " --bounces 1 --bounce-rays 16 ",
            " --average 30 ": " --average 2 "}
@@ -165,7 +167,11 @@ class HowTo(BenchRecordsTest):
         self.write("sweep.toml", sweep_text(200))
 
     def make_designed(self, _):
-        self.shell("tofsmith design --method factorize --effort 0.05 --trials 1000 -o designed")
+        """Designed once for all commands."""
+        if not hasattr(HowTo, "designed"):
+            HowTo.designed = tempfile.TemporaryDirectory(prefix="tofsmith-designed-")
+            self.shell("tofsmith design --effort 0 --trials 1000 --force -o " + HowTo.designed.name)
+        shutil.copytree(HowTo.designed.name, self.path("designed"))
 
     def prepare(self, command):
         written = set(re.findall(r"(?:-o|--truth|--table|--store|--export|>) ([^\s-]\S*)", command))
