@@ -63,7 +63,8 @@ for component in "${components[@]}"; do
   else
     install_packages "$component"
     use_debian_tools
-    settings=(-DTOFSMITH_TARGETS="$(own_target)" -DTOFSMITH_OPTIMIZE_KERNELS_ONLY=ON)
+    # Without optimization, because the unit tests are not run.
+    settings=(-DTOFSMITH_TARGETS="$(own_target)" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
     for package in "${forbidden[@]}"; do settings+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"); done
     # One build folder for all components, so that a component reuses the objects of its dependencies.
     bash -c "$steps" steps "$root" "$root/build-components" "$component" install "${settings[@]}"
