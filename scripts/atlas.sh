@@ -14,19 +14,20 @@
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/packages.sh
+source "$root/scripts/packages.sh"
 read -ra tofsmith <<<"${TOFSMITH:-$root/build-dev/apps/tofsmith}"
 
 shard='' seed=1 collect=false stores="$root/build-atlas"
 while (($#)); do
   case "$1" in
     -h | --help)
-      sed -n '/^# Makes/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-      exit 0
+      print_help && exit
       ;;
     --shard) shard=${2:?--shard needs i/n} && shift ;;
     --seed) seed=${2:?--seed needs a number} && shift ;;
     --collect) collect=true ;;
-    -*) echo "unknown option $1; see --help" >&2 && exit 2 ;;
+    -*) tofsmith_die "unknown option $1; see --help" ;;
     *) stores=$1 ;;
   esac
   shift
