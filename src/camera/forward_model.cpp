@@ -113,12 +113,11 @@ double constant_variance_e2_of(const Sensor& sensor) {
 }
 
 ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
-    : samples_(code.samples()),
-      taps_(code.is_signed() ? 2 : code.taps()),
-      contrasts_(in_camera_order(camera.sensor.contrasts_of(code), camera)),
-      sensitivity_(sensitivities(code, camera.sensor)) {
+    : samples_(code.samples()), taps_(code.is_signed() ? 2 : code.taps()) {
   camera.validate();
   require_fits(code, camera);
+  contrasts_ = in_camera_order(camera.sensor.contrasts_of(code), camera);
+  sensitivity_ = sensitivities(code, camera.sensor);
   const Sensor sensor = in_buckets(camera).sensor;
   tap_dark_e_per_s_ = sensor.dark_current_e_per_s;
   readout_variance_e2_ = constant_variance_e2_of(sensor);
