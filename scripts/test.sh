@@ -71,8 +71,8 @@ failures="$build/Testing/Temporary/LastTestsFailed.log" # one test per line, inc
 rm -f "$results" "$failures"
 status=0
 # One more than there are cores: some tests wait for a browser or an instrument.
-"${in_locale[@]}" ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --output-on-failure --output-junit "$results" "$@" \
-  </dev/null || status=$?
+"${in_locale[@]}" ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --output-on-failure \
+  --output-junit "$results" "$@" </dev/null || status=$?
 
 [[ -s "$results" ]] || tofsmith_die "ctest wrote no results"
 total=$(grep -c '<testcase ' "$results" || true)

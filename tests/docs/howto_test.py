@@ -25,7 +25,7 @@ from command_line import TOOL  # noqa: E402
 from sweep_text import sweep_text  # noqa: E402
 
 SHORTER = {" design ": " design --effort 0.01 --trials 1000 ",
-           " --vary bandwidth ": " --trials 1000 --vary power --max-factor 2 ",
+           " --vary bandwidth ": " --vary bandwidth --trials 1000 --max-factor 2 ",
            " reproduce all ": " reproduce fig5 --fast ",
            " --bounces 1 ": " --bounces 1 --bounce-rays 16 ",
            " --average 30 ": " --average 2 "}
@@ -167,7 +167,7 @@ class HowTo(BenchRecordsTest):
         self.write("sweep.toml", sweep_text(200))
 
     def make_designed(self, _):
-        """Designed once for all commands."""
+        """Designs once and copies the result for each command."""
         if not hasattr(HowTo, "designed"):
             HowTo.designed = tempfile.TemporaryDirectory(prefix="tofsmith-designed-")
             self.shell("tofsmith design --effort 0 --trials 1000 --force -o " + HowTo.designed.name)
