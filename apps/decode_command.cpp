@@ -1,31 +1,192 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 
 #include "commands.hpp"
-#include "decode_pipe.hpp"
-#include "decode_report.hpp"
+#include "decode_arguments.hpp"
 #include "described_options.hpp"
-#include "device_arguments.hpp"
-#include "filter_arguments.hpp"
 #include "help_pages.hpp"
 #include "method_arguments.hpp"
-#include "multipath_arguments.hpp"
 #include "number_checks.hpp"
 #include "recorded_with.hpp"
 #include "session.hpp"
-#include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 
 namespace tofsmith::apps {
 
 namespace {
+
+constexpr std::size_t max_lines = 8, first_lines = 3, max_listed = 100'000;
+
+std::string kind_of(const DecodeRequest& request) {
+  if (holds_points(request.output)) return "points";
+  return request.kind == DepthKind::z ? "z-depth" : "radial distance";
+}
+
+/// Returns a text such as "ok 76.10 %, low_signal 3.20 %"; "" without pixels.
+std::string status_text(const StatusCounts& statuses) {
+  const auto pixels = static_cast<double>(statuses.pixels());
+  std::string text;
+  for (const PixelStatus status : all_pixel_statuses) {
+    const std::int64_t count = statuses.of(status);
+    if (count > 0)
+      text += fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", name_of(status),
+                          100.0 * static_cast<double>(count) / pixels);
+  }
+  return text;
+}
+
+/// Returns "text: status", or only the text if no pixels were counted.
+std::string with_status(const std::string& text, const StatusCounts& statuses) {
+  const std::string status = status_text(statuses);
+  return status.empty() ? text : fmt::format("{}: {}", text, status);
+}
+
+std::string plural(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string frame_lines(const DecodeRequest& request, const DecodedRecording& result) {
+  const std::size_t frames = result.frames.size();
+  const std::size_t listed = frames <= max_lines ? frames : first_lines;
+  std::string lines;
+  for (std::size_t i = 0; i < listed; ++i)
+    lines += with_status(fmt::format("wrote {} ({})", result.files[i].string(), kind_of(request)),
+                         result.frames[i]) +
+             "\n";
+  if (listed < frames)
+    lines += fmt::format("... and {} more, up to {}\n", frames - listed,
+                         result.files[frames - 1].string());
+  return lines;
+}
+
+std::string stack_lines(const DecodeRequest& request, const DecodedRecording& result) {
+  std::string lines;
+  for (std::size_t i = 0; i < result.files.size(); ++i) {
+    const DecodedPlane plane = result.outputs[i];
+    lines += fmt::format("wrote {} ({})\n", result.files[i].string(),
+                         plane == DecodedPlane::depth ? kind_of(request) : name_of(plane));
+  }
+  return lines;
+}
+
+/// Returns a summary for the terminal: one line per frame (only the first ones if there are many),
+/// and one with totals and rate.
+std::string decode_lines(const DecodeRequest& request, const DecodedRecording& result) {
+  return (request.stack ? stack_lines(request, result) : frame_lines(request, result)) +
+         with_status(fmt::format("{} of {} x {} in {}, {} frames/s, {} Mpixel/s",
+                                 plural(result.frames.size(), "frame"), result.height, result.width,
+                                 time_text(result.seconds), rate_text(result.frames_per_s()),
+                                 rate_text(result.megapixels_per_s())),
+                     result.total());
+}
+
+/// Adds frames, files, status counts and rate to a document. The list of frames is omitted beyond
+/// 100,000 frames.
+void add_decode_summary(const DecodeRequest& request, const DecodedRecording& result,
+                        nlohmann::ordered_json& document) {
+  const auto add_status = [](nlohmann::ordered_json& to, const StatusCounts& statuses) {
+    for (const PixelStatus status : all_pixel_statuses)
+      if (statuses.of(status) > 0) to["status"][std::string(name_of(status))] = statuses.of(status);
+  };
+  document["frame_count"] = result.frames.size();
+  if (result.frames.size() <= max_listed) {
+    nlohmann::ordered_json& frames = document["frames"] = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < result.frames.size(); ++i) {
+      nlohmann::ordered_json entry = {{"frame", result.first_frame + static_cast<int>(i)}};
+      if (!request.stack) entry["output"] = result.files[i].string();
+      add_status(entry, result.frames[i]);
+      frames.push_back(std::move(entry));
+    }
+  }
+  if (request.stack)
+    for (std::size_t i = 0; i < result.files.size(); ++i)
+      document["stack"][std::string(name_of(result.outputs[i]))] = result.files[i].string();
+  add_status(document, result.total());
+  document["seconds"] = result.seconds;
+  document["frames_per_s"] = result.frames_per_s();
+  document["megapixels_per_s"] = result.megapixels_per_s();
+}
+
+/// Value of RAW and OUTPUT that means standard input and output.
+inline constexpr std::string_view pipe_word = "-";
+
+/// Polls in short steps, so that Ctrl-C is handled while no input arrives.
+std::size_t read_input(std::span<std::byte> into) {
+  constexpr int step_ms = 100;
+  std::size_t done = 0;
+  while (done < into.size()) {
+    if (interrupted()) throw Interrupted();
+    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (poll(&input, 1, step_ms) <= 0) continue;
+    const ssize_t count = ::read(STDIN_FILENO, into.data() + done, into.size() - done);
+    if (count < 0 && errno != EINTR && errno != EAGAIN)
+      throw IoError("standard input",
+                    fmt::format("cannot read: {}", std::generic_category().message(errno)));
+    if (count == 0) break;
+    if (count > 0) done += static_cast<std::size_t>(count);
+  }
+  return done;
+}
+
+void write_output(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (count < 0 && errno != EINTR)
+      throw IoError("standard output",
+                    fmt::format("cannot write: {}", std::generic_category().message(errno)));
+    if (count > 0) bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+}
+
+/// Implements `decode - ... -o -`: decodes frames from standard input to standard output. Messages
+/// go to standard error.
+/// @throws UsageError as decode_all(); Interrupted, also while waiting for a frame
+void decode_pipe(const DecodeRequest& request, const FrameBackend& backend, Session& session) {
+  if (session.json)
+    throw UsageError(
+        "--json: standard output contains the frames of -o -; expected an output file");
+  if (isatty(STDOUT_FILENO) != 0)
+    throw UsageError("-o -: standard output is a terminal; expected a pipe or a file");
+  // A large pipe buffer avoids transferring a frame in many small pieces. Failure is harmless.
+  constexpr int pipe_bytes = 1 << 20;
+  static_cast<void>(fcntl(STDIN_FILENO, F_SETPIPE_SZ, pipe_bytes));
+  static_cast<void>(fcntl(STDOUT_FILENO, F_SETPIPE_SZ, pipe_bytes));
+  DecodedStream result;
+  const auto tell = [&] {
+    fmt::print(stderr, "decoded {} frame{}{}\n", result.frames, result.frames == 1 ? "" : "s",
+               result.seconds > 0.0
+                   ? fmt::format(", {} frames/s as received",
+                                 rate_text(static_cast<double>(result.frames) / result.seconds))
+                   : "");
+  };
+  try {
+    decode_stream(request, backend, read_input, write_output, terminal_progress("decoding"),
+                  result);
+  } catch (const std::invalid_argument& error) {
+    throw wrong_option(error);
+  } catch (...) {
+    session.tells_what_is_kept = true;
+    tell();
+    throw;
+  }
+  tell();
+}
 
 struct DecodeArguments {
   DecodeRequest request;

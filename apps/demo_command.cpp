@@ -8,7 +8,6 @@
 
 #include "commands.hpp"
 #include "described_options.hpp"
-#include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
 #include "scene_source.hpp"

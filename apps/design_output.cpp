@@ -8,7 +8,7 @@
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
-#include "tofsmith/simulate/depth_error_text.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith::apps {
 

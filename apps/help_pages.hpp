@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace tofsmith::apps {
@@ -27,5 +28,15 @@ void add_examples(CLI::App& app);
 
 /// Returns the names of an option with their dashes: "-o", "--output". Positionals have none.
 std::vector<std::string> dashed_names(const CLI::Option& option);
+
+/// Returns all commands with their arguments, for manual pages and shell completion.
+///   {"version": "0.1.0",
+///    "names": {"camera": ["paper-10f0", ...], "code": [...], "scene": [...]},    built-in ones
+///    "commands": [{"words": ["calibrate", "noise"], "summary", "example", "subcommands": [...],
+///                  "positionals": [argument, ...], "options": [argument, ...]}, ...]}
+/// The first command has no words: it is the program, whose options apply to all commands. An
+/// argument is {"names": ["-o", "--output"], "help", "needs": [...], "excludes": [...], "value":
+/// "TEXT", "default", "choices": [...], "required", "many"}; flags have no "value".
+nlohmann::ordered_json command_listing(const CLI::App& app);
 
 }  // namespace tofsmith::apps

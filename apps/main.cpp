@@ -18,12 +18,9 @@
 #include <string>
 #include <system_error>
 
-#include "command_listing.hpp"
 #include "commands.hpp"
 #include "help_pages.hpp"
-#include "interrupt.hpp"
 #include "number_checks.hpp"
-#include "printed_text.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/build_info.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <functional>
@@ -10,7 +11,8 @@
 #include <utility>
 
 #include "session.hpp"
-#include "tofsmith/core/unit_text.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith::apps {
 

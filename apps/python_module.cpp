@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "python_module.hpp"
+#include "program_directory.hpp"
 
 #include <unistd.h>
 
@@ -10,7 +11,6 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "program_directory.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith::apps {

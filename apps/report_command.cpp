@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "session.hpp"
+#include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/design_report.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -15,6 +16,10 @@
 #include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith::apps {
+
+/// Makes a message safe for a terminal: control bytes and invalid UTF-8 are shown as \xNN, and text
+/// beyond `longest` is cut.
+std::string printed(std::string_view message, std::size_t longest = 4000);
 
 /// Error in the combination of arguments; the program exits with code 2.
 class UsageError : public std::runtime_error {

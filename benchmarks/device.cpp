@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "decode_setup.hpp"
+#include "gpu/device_decoder.hpp"
 #include "gpu/device_filter.hpp"
-#include "gpu/device_tile.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -17,7 +17,7 @@
 #include "asked_figures.hpp"
 #include "design/exposure_bound.hpp"
 #include "design/exposure_split.hpp"
-#include "design/frequencies/square_code.hpp"
+#include "design/frequencies/square_error.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace {

@@ -13,7 +13,6 @@
 #include "decode_frame.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/filter.hpp"
-#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith::benchmarks {
 namespace {

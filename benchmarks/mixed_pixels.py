@@ -77,7 +77,8 @@ def main():
                         "depth,status,deviation", "-o", directory / "depth.npz",
                         *(() if mixed == "off" else ("--mixed", mixed)))
                     with np.load(directory / "depth.npz") as arrays:
-                        planes[mixed] = {k: arrays[k].reshape(HEIGHT, WIDTH) for k in arrays.files}
+                        planes[mixed] = {k: arrays[k].reshape(HEIGHT, WIDTH) for k in arrays.files
+                                         if arrays[k].size == WIDTH * HEIGHT}
                 depth, deviation = planes["off"]["depth"], planes["off"]["deviation"]
                 limit = np.maximum(LEAST_M, 3 * deviation)
                 decoded = planes["off"]["status"] == STATUS_OK

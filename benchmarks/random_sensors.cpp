@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "design/frequencies/frequency_choice.hpp"
+#include "design/frequencies/frequency_search.hpp"
 #include "design/judge.hpp"
 #include "random_sensors.hpp"
 #include "tofsmith/design/design.hpp"

@@ -17,7 +17,7 @@
 #include "asked_figures.hpp"
 #include "chip_setup.hpp"
 #include "design/chips/chip_metric.hpp"
-#include "generated_meshes.hpp"
+#include "generated_shapes.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/design/chip_search.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"

@@ -22,11 +22,11 @@ const std::string_view @name@ = R\"kernels(@kernel_text@)kernels\";
   target_sources(tofsmith_gpu PRIVATE "${source}")
 endfunction()
 
-tofsmith_add_kernels(decode_kernels decode_tables.hpp decode_parameters.h numbers.cl bins.cl planes.cl)
-tofsmith_add_kernels(filter_kernels filter_tables.hpp decode_parameters.h numbers.cl filter_parameters.h
+tofsmith_add_kernels(decode_kernels device_tables.hpp decode_parameters.h numbers.cl bins.cl planes.cl)
+tofsmith_add_kernels(filter_kernels device_tables.hpp decode_parameters.h numbers.cl filter_parameters.h
                      windows.cl slopes.cl)
 tofsmith_add_kernels(time_kernels device_time_filter.hpp decode_parameters.h numbers.cl time_parameters.h time.cl)
-tofsmith_add_kernels(mean_kernels device_means.hpp decode_parameters.h numbers.cl means.cl)
+tofsmith_add_kernels(mean_kernels device_raw.hpp decode_parameters.h numbers.cl means.cl)
 
 if(TOFSMITH_HAS_OPENCL)
   target_link_libraries(tofsmith_gpu PRIVATE OpenCL::OpenCL)

@@ -6,16 +6,13 @@
 #include <memory>
 #include <optional>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "bound_filter.hpp"
 #include "file_objects.hpp"
-#include "filter_options.hpp"
 #include "lens.hpp"
-#include "multipath_options.hpp"
 #include "options.hpp"
-#include "output_policy.hpp"
 #include "progress.hpp"
-#include "raw_array.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/gpu.hpp"

@@ -4,7 +4,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "output_policy.hpp"
+#include "options.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"

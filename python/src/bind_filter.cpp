@@ -4,17 +4,15 @@
 
 #include <optional>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "bound_filter.hpp"
 #include "field_dicts.hpp"
-#include "filter_options.hpp"
 #include "options.hpp"
 #include "progress.hpp"
-#include "raw_array.hpp"
 #include "tofsmith/decode/filter.hpp"
 #include "tofsmith/decode/merge_exposures.hpp"
 #include "tofsmith/decode/stray_light.hpp"
-#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith::python {
 

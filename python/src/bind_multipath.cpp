@@ -4,7 +4,6 @@
 
 #include "bindings.hpp"
 #include "field_dicts.hpp"
-#include "multipath_options.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "tofsmith/simulate/bounds.hpp"

@@ -10,7 +10,6 @@
 #include "bindings.hpp"
 #include "options.hpp"
 #include "progress.hpp"
-#include "shared_thread_limit.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 #include "tofsmith/version.hpp"

@@ -8,7 +8,6 @@
 #include "capture_arguments.hpp"
 #include "lens.hpp"
 #include "progress.hpp"
-#include "shared_thread_limit.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 

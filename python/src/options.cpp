@@ -88,4 +88,12 @@ std::string OptionReader::full_name(const std::string& name) const {
   return owner_.empty() ? name : owner_ + "." + name;
 }
 
+MultipathOptions multipath_options(const py::dict& values, const std::string& owner,
+                                   double range_m) {
+  MultipathOptions options;
+  OptionReader(values, owner).fields(options, {"status_thresholds"}).finish();
+  options.validate(range_m);
+  return options;
+}
+
 }  // namespace tofsmith::python

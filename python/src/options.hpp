@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -14,8 +15,11 @@
 
 #include "arrays.hpp"
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 #include "tofsmith/design/design.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/decode_recording.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::python {
 
@@ -168,6 +172,19 @@ class OptionReader {
 template <typename Options>
 void read_options(const py::dict& values, const std::string& owner, Options& options) {
   OptionReader(values, owner).fields(options).finish();
+}
+
+/// Reads the options of two-return and tail decoding from a dict; `owner` is its name in errors.
+/// @throws std::invalid_argument naming the violated rule or an unknown name
+MultipathOptions multipath_options(const pybind11::dict& values, const std::string& owner,
+                                   double range_m);
+
+/// Options of an export from a dict; the format is the caller's.
+/// @throws std::invalid_argument naming an unknown name, TypeError for a value of another type
+ExportOptions export_options(const std::string& format, const pybind11::dict& values);
+
+inline OutputPolicy policy_of(bool overwrite) {
+  return overwrite ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
 }
 
 }  // namespace tofsmith::python

@@ -6,9 +6,12 @@
 
 #include <chrono>
 #include <exception>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
 
 namespace tofsmith::python {
@@ -46,5 +49,26 @@ auto without_gil(const py::object& callback, Work&& work) {
     throw;
   }
 }
+
+/// A ThreadLimit shared by calls in several threads: it exists while any of them runs, with the
+/// number of threads of the first call.
+class SharedThreadLimit {
+ public:
+  explicit SharedThreadLimit(int threads) {
+    const std::lock_guard lock(mutex_);
+    if (calls_++ == 0 && threads > 0) limit_.emplace(threads);
+  }
+  ~SharedThreadLimit() {
+    const std::lock_guard lock(mutex_);
+    if (--calls_ == 0) limit_.reset();
+  }
+  SharedThreadLimit(const SharedThreadLimit&) = delete;
+  SharedThreadLimit& operator=(const SharedThreadLimit&) = delete;
+
+ private:
+  static inline std::mutex mutex_;
+  static inline int calls_ = 0;
+  static inline std::optional<ThreadLimit> limit_;
+};
 
 }  // namespace tofsmith::python

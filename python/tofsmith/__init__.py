@@ -25,8 +25,18 @@ from types import ModuleType as _ModuleType
 from . import _components  # isort: skip
 from . import _check, _tofsmith
 from ._actual_waveforms import GeneratorReport, actual_waveforms, arm_output, generator_report
-from ._bounds import CramerRaoBound, DirectTofBound, HistogramBound, ReceiverBound
 from ._camera import Camera, built_in_camera_names, camera_keys
+from ._camera_calibration import (
+    CalibratedStrayLight,
+    PhotonTransfer,
+    PhotonTransferPoint,
+    SensorDrift,
+    TemperatureDrift,
+    calibrate_stray_light,
+    calibrate_temperature,
+    photon_transfer,
+    remove_stray_light,
+)
 from ._camera_fields import (
     Generator,
     ImpulseResponse,
@@ -58,8 +68,12 @@ from ._correlation_calibration import (
     CalibratedCorrelation,
     DeadPixels,
     DelaySweep,
+    HarmonicRatio,
+    IdealCodeFit,
     calibrate_correlation,
+    fit_ideal_codes,
     read_delay_sweep,
+    write_correlation_report,
 )
 from ._depth_calibration import CalibratedDepth, CalibratedFrequency
 from ._decode import Decoder, decode
@@ -81,6 +95,10 @@ from ._design import (
     suggested_exposures,
 )
 from ._evaluate import (
+    CramerRaoBound,
+    DirectTofBound,
+    HistogramBound,
+    ReceiverBound,
     best_rotation,
     evaluate,
     generator_loss,
@@ -118,12 +136,6 @@ from ._forward_model import (
     coding_curve_rank,
     harmonics_used,
 )
-from ._ideal_code_fit import (
-    HarmonicRatio,
-    IdealCodeFit,
-    fit_ideal_codes,
-    write_correlation_report,
-)
 from ._light import ExponentialTail, MultipathReturns, Transients
 from ._multipath import (
     MultipathBound,
@@ -133,7 +145,6 @@ from ._multipath import (
     multipath_error,
     single_path_bias_m,
 )
-from ._photon_transfer import PhotonTransfer, PhotonTransferPoint, photon_transfer
 from ._recordings import DecodedRecording, DecodedStream
 from ._report_pages import write_evaluation_report, write_report
 from ._reports import (
@@ -169,9 +180,7 @@ from ._scene import (
     radial_from_z,
     z_from_radial,
 )
-from ._stray_light import CalibratedStrayLight, calibrate_stray_light, remove_stray_light
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
-from ._temperature import SensorDrift, TemperatureDrift, calibrate_temperature
 from ._tofsmith import Interrupted
 from ._training_set import TrainingSetRun, write_training_set
 from ._waveform import Waveform

@@ -14,6 +14,16 @@ import numpy.typing as npt
 from . import _check
 
 
+def light_of(signal_e_per_s: float, ambient_e_per_s: float) -> tuple[float, float]:
+    """Returns both as floats. Raises ValueError unless both are >= 0."""
+    light = []
+    for value, name in ((signal_e_per_s, "signal_e_per_s"), (ambient_e_per_s, "ambient_e_per_s")):
+        if _check.number(value, name) < 0:
+            raise ValueError(f"{name}: got {value}; needs a number >= 0")
+        light.append(float(value))
+    return light[0], light[1]
+
+
 @dataclass(frozen=True)
 class ExponentialTail:
     """Light that decreases exponentially after the direct return, as in haze or translucent

@@ -14,8 +14,7 @@ from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Progress
 from ._code import CodeLike, code_of
-from ._bounds import light_of
-from ._light import ExponentialTail
+from ._light import ExponentialTail, light_of
 from ._option_fields import MultipathErrorOptions
 from ._options import takes
 

@@ -126,7 +126,7 @@ def main():
             new, better = new + (camera not in entries), better + (camera in entries)
             entries[camera] = (error, lines)
     entries = shared(entries)
-    # The format is described in atlas_text.cpp.
+    # The format is described in atlas.cpp.
     text = "\n".join([HEAD, *(line for camera in sorted(entries) for line in entries[camera][1])]) + "\n"
     with open(path + ".new", "w", encoding="utf-8") as file:
         file.write(text)

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/delay_groups.hpp"
-#include "calibrate/harmonic_basis.hpp"
+#include "calibrate/harmonic_fit.hpp"
 #include "calibrate/pixel_alignment.hpp"
 #include "calibrate/sweep_pixels.hpp"
 #include "tofsmith/core/error.hpp"

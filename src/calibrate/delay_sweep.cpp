@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/delay_groups.hpp"
+#include "calibrate/sweep_pixels.hpp"
 #include "io/arrays/shared/sample_times.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"

@@ -10,7 +10,7 @@
 #include "calibrate/depth_error_picture.hpp"
 #include "calibrate/depth_term_choice.hpp"
 #include "calibrate/frequency_calibration.hpp"
-#include "calibrate/harmonic_basis.hpp"
+#include "calibrate/harmonic_fit.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "calibrate/parametric_response.hpp"
-#include "calibrate/response_spectrum.hpp"
 #include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/harmonic_basis.hpp"
+#include "calibrate/harmonic_fit.hpp"
 #include "core/shared/periodic.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"

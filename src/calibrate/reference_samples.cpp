@@ -9,7 +9,7 @@
 #include <cmath>
 #include <complex>
 
-#include "calibrate/harmonic_basis.hpp"
+#include "calibrate/harmonic_fit.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"

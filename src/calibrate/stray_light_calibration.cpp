@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/shared/padded_convolution.hpp"
-#include "decode/shared/saturation_level.hpp"
+#include "core/shared/periodic.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"

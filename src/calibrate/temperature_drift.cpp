@@ -9,7 +9,7 @@
 #include <complex>
 #include <numeric>
 
-#include "calibrate/harmonic_basis.hpp"
+#include "calibrate/harmonic_fit.hpp"
 #include "calibrate/reference_samples.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/camera/forward_model.hpp"

@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
+
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <string>
 
-#include "core/shared/exponential_average.hpp"
 #include "core/shared/periodic.hpp"
+#include "core/shared/special_functions.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

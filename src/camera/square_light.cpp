@@ -9,7 +9,7 @@
 
 #include "camera/common_frequency.hpp"
 #include "camera/distinct_values.hpp"
-#include "core/shared/list_text.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

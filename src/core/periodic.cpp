@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/shared/periodic.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/FFT>
 
@@ -88,6 +89,97 @@ Eigen::VectorXd circular_shift(const Eigen::VectorXd& x, int shift) {
   Eigen::VectorXd shifted(size);
   for (Eigen::Index n = 0; n < size; ++n) shifted[(((n + shift) % size) + size) % size] = x[n];
   return shifted;
+}
+
+namespace {
+
+/// Next product of 2, 3 and 5, for fast transforms.
+int fast_length(int least) {
+  for (int length = least;; ++length) {
+    int rest = length;
+    for (const int factor : {2, 3, 5})
+      while (rest % factor == 0) rest /= factor;
+    if (rest == 1) return length;
+  }
+}
+
+int reach(int kernel_size, int image_size) { return std::min(kernel_size / 2, image_size - 1); }
+
+}  // namespace
+
+PaddedConvolution::PaddedConvolution(const Image<float>& kernel, int height, int width)
+    : height_(height),
+      width_(width),
+      along_row_(fast_length(width + reach(kernel.width, width))),
+      along_column_(fast_length(height + reach(kernel.height, height))) {
+  require(kernel.height % 2 == 1 && kernel.width % 2 == 1, "kernel size", kernel.height,
+          "must be odd in rows and columns");
+  const int rows = along_column_.samples(), columns = along_row_.samples();
+  const int up = reach(kernel.height, height), left = reach(kernel.width, width);
+  Eigen::MatrixXd wrapped = Eigen::MatrixXd::Zero(rows, columns);
+  for (int v = -up; v <= up; ++v)
+    for (int u = -left; u <= left; ++u)
+      wrapped((v + rows) % rows, (u + columns) % columns) =
+          static_cast<double>(kernel(kernel.height / 2 + v, kernel.width / 2 + u));
+  const Halves halves = of_rows(wrapped, rows);
+  real_.resize(along_column_.coefficients(), along_row_.coefficients());
+  imaginary_.resizeLike(real_);
+  Eigen::VectorXcd spectrum;
+  for (Eigen::Index c = 0; c < real_.cols(); ++c) {
+    along_column_.forward(halves.real.col(c), spectrum);
+    real_.col(c) = spectrum;
+    along_column_.forward(halves.imaginary.col(c), spectrum);
+    imaginary_.col(c) = spectrum;
+  }
+}
+
+PaddedConvolution::Halves PaddedConvolution::of_rows(const Eigen::MatrixXd& padded,
+                                                     int rows) const {
+  Halves halves{Eigen::MatrixXd::Zero(along_column_.samples(), along_row_.coefficients()),
+                Eigen::MatrixXd::Zero(along_column_.samples(), along_row_.coefficients())};
+  Eigen::VectorXcd spectrum;
+  for (Eigen::Index v = 0; v < rows; ++v) {
+    along_row_.forward(padded.row(v).transpose(), spectrum);
+    halves.real.row(v) = spectrum.real().transpose();
+    halves.imaginary.row(v) = spectrum.imag().transpose();
+  }
+  return halves;
+}
+
+Image<float> PaddedConvolution::apply(const Image<float>& image) const {
+  TOFSMITH_ASSERT_EQ(image.height, height_);
+  TOFSMITH_ASSERT_EQ(image.width, width_);
+  Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(height_, along_row_.samples());
+  for (int v = 0; v < height_; ++v)
+    for (int u = 0; u < width_; ++u) padded(v, u) = static_cast<double>(image(v, u));
+  Halves halves = of_rows(padded, height_);
+  // Column a + i b times kernel c + i d, with transforms a, b, c and d of real signals.
+  Eigen::VectorXcd a, b;
+  Eigen::VectorXd values;
+  for (Eigen::Index c = 0; c < real_.cols(); ++c) {
+    along_column_.forward(halves.real.col(c), a);
+    along_column_.forward(halves.imaginary.col(c), b);
+    const auto real = real_.col(c), imaginary = imaginary_.col(c);
+    along_column_.inverse(a.cwiseProduct(real) - b.cwiseProduct(imaginary), values);
+    halves.real.col(c) = values;
+    along_column_.inverse(a.cwiseProduct(imaginary) + b.cwiseProduct(real), values);
+    halves.imaginary.col(c) = values;
+  }
+  Image<float> result(height_, width_);
+  Eigen::VectorXcd spectrum(along_row_.coefficients());
+  for (int v = 0; v < height_; ++v) {
+    spectrum.real() = halves.real.row(v).transpose();
+    spectrum.imag() = halves.imaginary.row(v).transpose();
+    along_row_.inverse(spectrum, values);
+    for (int u = 0; u < width_; ++u) result(v, u) = static_cast<float>(values[u]);
+  }
+  return result;
+}
+
+double PaddedConvolution::bytes(const Image<float>& kernel, int height, int width) {
+  const double rows = fast_length(height + reach(kernel.height, height));
+  const double columns = fast_length(width + reach(kernel.width, width));
+  return 24.0 * rows * columns;  // kernel, and halves of the image
 }
 
 }  // namespace tofsmith

@@ -6,8 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "core/shared/enum_words.hpp"
 #include "decode/output/output_kernel.hpp"
 #include "decode/output/pixel_model.hpp"
 #include "decode/output/pixel_output.hpp"
@@ -15,8 +18,8 @@
 #include "decode/search/chord_matcher.hpp"
 #include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
-#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/decode_method.hpp"
 
 namespace tofsmith {
 

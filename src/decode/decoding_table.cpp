@@ -9,9 +9,9 @@
 #include <string>
 
 #include "core/shared/decompositions.hpp"
-#include "decode/search/distinct_directions.hpp"
+#include "decode/search/direction_table.hpp"
 #include "decode/search/smooth_curve.hpp"
-#include "decode/shared/saturation_level.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "decode/table_resolution.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -4,10 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <string>
+
 #include "core/shared/enum_words.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 constexpr EnumWords<PixelStatus, all_pixel_statuses.size()> pixel_status_words(
@@ -90,6 +96,75 @@ DepthImage::DepthImage(const std::vector<DecodedPlane>& planes, int height, int 
           image = {height, width, no_value<Value>};
         },
         *this);
+}
+
+namespace {
+
+std::string size_text(int height, int width) {
+  return std::to_string(height) + " x " + std::to_string(width);
+}
+
+void validate_map(const Image<float>& map, const char* field, int height, int width,
+                  bool must_be_positive) {
+  if (map.empty()) return;
+  require(map.height == height && map.width == width, field, size_text(map.height, map.width),
+          "must have the size of the frames, " + size_text(height, width));
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      const float value = map(row, column);
+      if (std::isnan(value) || (std::isfinite(value) && (value > 0.0f || !must_be_positive)))
+        continue;
+      reject(std::string(field) + "[" + std::to_string(row) + ", " + std::to_string(column) + "]",
+             detail::describe(value),
+             must_be_positive ? "must be finite and > 0, or NaN for a dead pixel"
+                              : "must be finite, or NaN for a dead pixel");
+    }
+}
+
+void require_within(const Image<float>& map, const char* field, std::size_t first,
+                    std::size_t count) {
+  if (map.empty()) return;
+  require(first <= map.size() && count <= map.size() - first, field,
+          std::to_string(map.size()) + " pixels",
+          "must cover pixels " + std::to_string(first) + " to " + std::to_string(first + count));
+}
+
+float wrapped(double depth_m, double range_m) {
+  const double turn_m = depth_m - range_m * std::floor(depth_m / range_m);
+  // Rounding to float can yield range_m, which equals 0.
+  const auto rounded = static_cast<float>(turn_m);
+  return rounded >= static_cast<float>(range_m) ? 0.0f : rounded;
+}
+
+}  // namespace
+
+void PixelMaps::validate(int height, int width) const {
+  validate_map(delay_offset_m, "delay_offset_m", height, width, false);
+  validate_map(gain, "gain", height, width, true);
+}
+
+void apply(const PixelMaps& maps, double range_m, const DecodedView& decoded, std::size_t first,
+           std::size_t count) {
+  require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
+  require_within(maps.delay_offset_m, "delay_offset_m", first, count);
+  require_within(maps.gain, "gain", first, count);
+  if (maps.empty()) return;
+  parallel_for_blocks(static_cast<std::int64_t>(count), 16384, [&](IndexRange range) {
+    for (std::int64_t i = range.begin; i < range.end; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const float offset_m =
+          maps.delay_offset_m.empty() ? 0.0f : maps.delay_offset_m.pixels[first + at];
+      const float gain = maps.gain.empty() ? 1.0f : maps.gain.pixels[first + at];
+      if (std::isnan(offset_m) || std::isnan(gain)) {
+        store_invalid(at, decoded);
+        continue;
+      }
+      if (decoded.depth_m && offset_m != 0.0f)
+        decoded.depth_m[at] = wrapped(static_cast<double>(decoded.depth_m[at]) - offset_m, range_m);
+      if (decoded.signal_e_per_s) decoded.signal_e_per_s[at] /= gain;
+      if (decoded.ambient_e_per_s) decoded.ambient_e_per_s[at] /= gain;
+    }
+  });
 }
 
 }  // namespace tofsmith

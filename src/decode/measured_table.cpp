@@ -7,7 +7,7 @@
 
 #include "core/shared/enum_words.hpp"
 #include "decode/search/smooth_curve.hpp"
-#include "decode/shared/saturation_level.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "decode/table_resolution.hpp"
 #include "tofsmith/core/error.hpp"
 

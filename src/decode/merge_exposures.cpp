@@ -8,7 +8,6 @@
 
 #include "core/shared/pixel_runs.hpp"
 #include "decode/shared/marked_raw.hpp"
-#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/merge_exposures.hpp"

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/shared/padded_convolution.hpp"
+#include "core/shared/periodic.hpp"
 #include "core/shared/pixel_runs.hpp"
 #include "decode/shared/marked_raw.hpp"
-#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/stray_light.hpp"

@@ -8,9 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
+
+/// Returns the highest harmonic at which both arms together have a gain of at least 1/25 (1/5 per
+/// arm in the paper); 0 without band limit.
+int useful_harmonics(const Camera& camera);
 
 bool has_same_waveforms(const CodeSet& a, const CodeSet& b);
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <map>
 
-#include "design/suggested_exposures.hpp"
+#include "design/baselines.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

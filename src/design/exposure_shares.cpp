@@ -1,10 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "design/exposure_shares.hpp"
+#include "design/exposure_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <utility>
+
+#include "camera/shared/depth_prior.hpp"
+#include "simulate/shared/depth_information.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 

@@ -4,6 +4,10 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
+
+#include "tofsmith/code/code_set.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 

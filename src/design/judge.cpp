@@ -6,18 +6,71 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "camera/shared/depth_prior.hpp"
 #include "design/baselines.hpp"
 #include "design/explanation.hpp"
 #include "design/exposure_order.hpp"
-#include "design/optimize/two_return_limit.hpp"
 #include "simulate/shared/camera_bounds.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/version.hpp"
 
 namespace tofsmith {
+
+namespace {
+
+/// Limit of two-return errors, relative to the best initial code.
+class TwoReturnLimit {
+ public:
+  explicit TwoReturnLimit(double max_loss) : max_loss_(max_loss) {}
+
+  void add_given(const std::optional<OperatingMultipathReport>& report) {
+    if (report && report->two_return)
+      min_m_ = std::min(min_m_, report->two_return->circular_m.value);
+  }
+  /// Returns a factor on the ranking error: two-return error / limit, clipped to [1, 1.25]; 1.25 if
+  /// two returns cannot be decoded; 1 if this is true of all initial codes.
+  double excess(const std::optional<OperatingMultipathReport>& report) const {
+    if (!report || std::isinf(min_m_)) return 1.0;
+    constexpr double max_excess = 1.25;
+    if (!report->two_return) return max_excess;
+    return std::clamp(report->two_return->circular_m.value / (max_loss_ * min_m_), 1.0, max_excess);
+  }
+
+ private:
+  double max_loss_;
+  double min_m_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
+                  std::uint64_t seed) {
+  code.provenance.method = method;
+  code.provenance.camera = camera.name;
+  code.provenance.seed = seed;
+  code.provenance.version = TOFSMITH_VERSION;
+  return code;
+}
+
+std::vector<MeasurementReport> reports_of(const CodeSet& code, const std::string& start) {
+  std::vector<MeasurementReport> reports;
+  for (int i = 0; i < code.measurements(); ++i) {
+    const Waveform &demodulation = code.demodulation(i), &modulation = code.modulation_of(i);
+    reports.push_back({.demodulation_duty = demodulation.mean(),
+                       .modulation_duty = modulation.duty(),
+                       .peak = modulation.peak(),
+                       .edges = modulation.edges() + demodulation.edges(),
+                       .start = start});
+  }
+  return reports;
+}
 
 namespace {
 

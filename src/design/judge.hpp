@@ -5,10 +5,17 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "tofsmith/design/candidate.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
+
+CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
+                  std::uint64_t seed);
+
+std::vector<MeasurementReport> reports_of(const CodeSet& code, const std::string& start);
 
 /// Seed for choosing codes and origins; judge() uses DesignOptions::seed.
 std::uint64_t search_seed(const DesignOptions& options);

@@ -4,9 +4,18 @@
 
 #include <Eigen/Core>
 
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
 
 namespace tofsmith {
+
+/// Returns the camera's shortest pulse or gap [periods], or 0.
+double shortest_run_periods(const Camera& camera);
+
+/// Tolerates rounding errors; always true for sampled waveforms.
+bool keeps_shortest_run(const Waveform& waveform, double shortest_run);
+
+bool keeps_shortest_run(const CodeSet& code, const Camera& camera);
 
 /// A binary waveform as the start of its first run and its run lengths (on, off, ...), in
 /// unconstrained parameters.

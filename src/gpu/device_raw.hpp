@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
+#include <vector>
 
+#include "decode/shared/marked_raw.hpp"
 #include "gpu/decode_parameters.h"
 #include "gpu/device_queue.hpp"
 #include "tofsmith/core/image.hpp"
@@ -48,6 +51,63 @@ class DeviceRaw {
   bool has_averaged_ = false;
   NoiseRatios noise_;
   DeviceMemory numbers_, averaged_;
+};
+
+/// Source of the kernels.
+extern const std::string_view mean_kernels;
+
+/// Means of frames on a device with doubles, with the same bits as on the CPU.
+class DeviceMeans {
+ public:
+  /// @param levels  numbers clipped in one frame are clipped in the mean
+  DeviceMeans(const Device& device, const SaturationLevels& levels);
+
+  /// Adds a frame; `raw` is not accessed after the call.
+  void add(const RawView& raw);
+  /// Computes the mean of the frames added since the last one.
+  /// @param averaged  measurements already averaged in each added frame
+  void finish(double averaged);
+  void forget() { frames_ = 0; }
+
+  /// Rounded to floats.
+  const DeviceRaw& result() const { return result_; }
+  /// Unrounded mean at some pixels (K numbers each).
+  std::vector<double> open_numbers(const std::vector<std::int32_t>& pixels);
+  /// Unrounded mean, measurement by measurement.
+  std::vector<double> numbers() const;
+  const DeviceQueue& queue() const { return queue_; }
+
+ private:
+  DeviceQueue queue_;
+  DeviceKernel add_to_sums_, write_means_, gather_means_;
+  SaturationLevels levels_;
+  struct Sums {
+    std::int32_t pixels = 0, frames = 0;
+    DeviceMemory memory;
+  };
+  std::int32_t measurements_ = 0, frames_ = 0;
+  Sums sums_;
+  DeviceRaw frame_, result_;
+  DeviceMemory wanted_, gathered_;
+};
+
+/// A frame in host or device memory.
+struct FrameSource {
+  RawView raw;                           ///< only the shape if the frame is on the device
+  const DeviceRaw* on_device = nullptr;  ///< null if the frame is on the host
+  const DeviceQueue* queue = nullptr;    ///< queue that writes the frame
+  DeviceMeans* means = nullptr;          ///< unrounded source of on_device, if a mean
+
+  std::int64_t pixels() const { return raw.pixels(); }
+  /// Copies pixels [first, first + count) to `to`, once work on the frame is done. The frame is not
+  /// overwritten before the copy is complete.
+  void bring(const DeviceQueue& to_queue, DeviceRaw& to, std::int64_t first,
+             std::int64_t count) const {
+    if (!on_device) return to.upload(to_queue, raw, first, count);
+    to_queue.follow(queue->mark());
+    to.copy(to_queue, *on_device, raw.measurements, first, count);
+    queue->follow(to_queue.mark());
+  }
 };
 
 }  // namespace tofsmith

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "gpu/table_words.hpp"
+#include "gpu/device_tables.hpp"
 
 namespace tofsmith {
 

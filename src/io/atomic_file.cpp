@@ -12,21 +12,84 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <sstream>
+#include <string>
 #include <system_error>
 
 #include "core/shared/hash.hpp"
-#include "io/process_identity.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
+
 namespace {
+
+/// Unique among all processes that may share files.
+struct ProcessIdentity {
+  /// Boot of the machine and namespace of its process numbers (differs between containers); "" if
+  /// unknown.
+  std::string machine;
+  std::int64_t number = 0;
+  std::string start;  ///< in case a number is reused; "" if unknown
+
+  static ProcessIdentity own();
+};
+
+/// Files of /proc have no size. Returns "" if the file is missing.
+std::string content_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string target_of(const char* link) {
+  std::error_code error;
+  const auto target = std::filesystem::read_symlink(link, error);
+  return error ? "" : target.string();
+}
+
+/// In ticks since boot (22nd field); "" if there is no such process.
+std::string start_of(std::int64_t process) {
+  const std::string stat = content_of(fmt::format("/proc/{}/stat", process));
+  const std::size_t after_name = stat.rfind(')');  // the name may contain any character
+  if (after_name == std::string::npos) return "";
+  std::istringstream fields(stat.substr(after_name + 1));
+  std::string field;
+  for (int i = 3; i <= 22; ++i)
+    if (!(fields >> field)) return "";
+  return field;
+}
+
+std::string own_machine() {
+  // /proc may belong to another namespace, with other process numbers.
+  if (target_of("/proc/self") != fmt::format("{}", ::getpid())) return "";
+  const std::string numbers = target_of("/proc/self/ns/pid");
+  std::string boot = content_of("/proc/sys/kernel/random/boot_id");
+  if (numbers.empty() || boot.empty()) return "";
+  boot.erase(boot.find_last_not_of('\n') + 1);
+  return fmt::format("{} {}", boot, numbers);
+}
+
+ProcessIdentity ProcessIdentity::own() {
+  const std::int64_t number = ::getpid();
+  return {own_machine(), number, start_of(number)};
+}
+
+/// False for processes of other machines, boots and namespaces.
+bool is_surely_gone(const ProcessIdentity& process, const ProcessIdentity& own) {
+  if (own.machine.empty() || process.machine != own.machine) return false;
+  if (::kill(static_cast<pid_t>(process.number), 0) != 0 && errno == ESRCH) return true;
+  const std::string start = start_of(process.number);
+  return !start.empty() && start != process.start;  // /proc may hide processes of other users
+}
 
 namespace fs = std::filesystem;
 
@@ -230,6 +293,39 @@ void write_file_atomically(const fs::path& path, std::span<const std::byte> cont
 
 void write_file_atomically(const fs::path& path, std::string_view content, OutputPolicy policy) {
   write_file_atomically(path, std::as_bytes(std::span(content.data(), content.size())), policy);
+}
+
+void make_output_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error)
+    throw IoError(directory.string(),
+                  fmt::format("cannot create this directory ({}); expected a writable location",
+                              error.message()));
+  if (!std::filesystem::is_directory(directory, error))
+    throw IoError(directory.string(), "is a file; expected a directory");
+}
+
+void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    if (std::filesystem::equivalent(output, input, ignored))
+      throw IoError(output.string(),
+                    fmt::format("is the input {} of this command; choose another name, which "
+                                "--force does not replace",
+                                input));
+}
+
+OutputPolicy policy_to_go_on(const std::vector<std::filesystem::path>& outputs,
+                             OutputPolicy policy) {
+  const auto is_there = [](const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+  };
+  const auto missing = std::find_if_not(outputs.begin(), outputs.end(), is_there);
+  const bool stopped = missing != outputs.begin() && missing != outputs.end() &&
+                       std::none_of(missing, outputs.end(), is_there);
+  return stopped && policy == OutputPolicy::refuse_existing ? OutputPolicy::refuse_other : policy;
 }
 
 }  // namespace tofsmith

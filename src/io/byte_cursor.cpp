@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "io/shared/byte_order.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -47,6 +50,12 @@ std::uint32_t ByteCursor::take_u32_little(std::string_view what) {
 
 void ByteCursor::fail_at(std::size_t position, std::string_view problem) const {
   throw IoError(fmt::format("{}: byte {}", file_, position), problem);
+}
+
+void swap_byte_order(std::span<std::byte> bytes, std::size_t item_size) {
+  if (item_size < 2) return;
+  for (auto item = bytes.begin(); item != bytes.end(); item += item_size)
+    std::reverse(item, item + item_size);
 }
 
 }  // namespace tofsmith

@@ -9,6 +9,7 @@
 
 #include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith {
 
@@ -27,6 +28,16 @@ std::string known_extension(const std::filesystem::path& path,
       fmt::format("found {}; expected one of {}",
                   extension.empty() ? "no extension" : fmt::format("the extension '{}'", extension),
                   fmt::join(known, ", ")));
+}
+
+std::string file_name_of(std::string_view name) {
+  std::string file;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_' || (c == '.' && !file.empty());
+    file += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return file;
 }
 
 }  // namespace tofsmith

@@ -10,10 +10,9 @@
 #include <set>
 #include <utility>
 
-#include "report/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
-#include "tofsmith/simulate/depth_error_text.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "report/level_text.hpp"
+#include "report/error_sections.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
 

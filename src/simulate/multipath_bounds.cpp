@@ -8,7 +8,7 @@
 
 #include "camera/shared/depth_prior.hpp"
 #include "core/shared/decompositions.hpp"
-#include "core/shared/exponential_average.hpp"
+#include "core/shared/special_functions.hpp"
 #include "simulate/bound_means.hpp"
 
 namespace tofsmith {

@@ -12,6 +12,8 @@
 #include "camera/shared/depth_prior.hpp"
 #include "core/shared/random.hpp"
 #include "simulate/pixel_capture.hpp"
+#include "simulate/shared/depth_information.hpp"
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"

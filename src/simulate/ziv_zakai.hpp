@@ -3,9 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "simulate/bound_means.hpp"
+#include "tofsmith/camera/camera.hpp"
 
 namespace tofsmith {
 

@@ -7,18 +7,57 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <iterator>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "camera/shared/depth_prior.hpp"
 #include "core/shared/hash.hpp"
+#include "io/documents/shared/document_text.hpp"
+#include "io/documents/shared/result_json.hpp"
 #include "io/text/shared/field_key.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
+
+std::uint64_t key_number(std::string_view key) {
+  std::uint64_t number = 0;
+  const std::string_view digits = key.substr(0, 16);
+  std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+  return number;
+}
+
+std::vector<std::int64_t> key_order(std::span<const std::string> keys) {
+  struct Entry {
+    std::uint64_t number;  // decides nearly all comparisons
+    std::int64_t place;
+  };
+  const auto key_of = [&](const Entry& entry) -> const std::string& {
+    return keys[static_cast<std::size_t>(entry.place)];
+  };
+  std::vector<Entry> entries;
+  entries.reserve(keys.size());
+  for (const std::string& key : keys)
+    entries.push_back({key_number(key), static_cast<std::int64_t>(entries.size())});
+  std::ranges::sort(entries, [&](const Entry& a, const Entry& b) {
+    if (a.number != b.number) return a.number < b.number;
+    return std::tie(key_of(a), a.place) < std::tie(key_of(b), b.place);
+  });
+  std::vector<std::int64_t> order;
+  order.reserve(entries.size());
+  const Entry* before = nullptr;
+  for (const Entry& entry : entries) {
+    if (before == nullptr || before->number != entry.number || key_of(*before) != key_of(entry))
+      order.push_back(entry.place);
+    before = &entry;
+  }
+  return order;
+}
 
 namespace {
 
@@ -141,6 +180,29 @@ std::string item_key(std::string_view setup, const OperatingRange& light,
   if (light.working_distance_m) append(text, "working distance ", *light.working_distance_m);
   if (light.depths && !DepthPrior::are_alike(*light.depths)) append(text, "depths ", *light.depths);
   return fnv1a_128_hex(text);
+}
+
+std::string item_result_json(const DepthErrorReport& report, const CodeSet* designed) {
+  nlohmann::ordered_json entry = {{"trials", report.trials},
+                                  {"seed", report.seed},
+                                  {"outlier_threshold_m", report.outlier_threshold_m}};
+  entry.update(depth_error_json(report, 0));
+  entry.erase("name");
+  entry.erase("rotation_bin");
+  if (designed) entry["designed"] = nlohmann::ordered_json::parse(code_to_json(*designed));
+  return entry.dump();
+}
+
+ItemResult parse_item_result(const std::string& json, const std::string& code,
+                             std::string_view file) {
+  nlohmann::json entry = parse_json(json, file);
+  if (!entry.is_object()) JsonReader(entry, file).mistyped("the result of an item");
+  entry["name"] = code;
+  const JsonReader reader(entry, file);
+  ItemResult result{depth_error_from_json(reader, reader), {}};
+  if (entry.contains("designed"))
+    result.designed = parse_code_json(entry["designed"].dump(), file).renamed(code);
+  return result;
 }
 
 }  // namespace tofsmith

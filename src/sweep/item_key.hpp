@@ -2,13 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "tofsmith/code/code_set.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
+
+/// Returns the first positions of all distinct keys, sorted by key as in the store.
+std::vector<std::int64_t> key_order(std::span<const std::string> keys);
+
+/// Returns the first 16 hexadecimal digits.
+std::uint64_t key_number(std::string_view key);
 
 /// Hash of camera and code without names and light levels.
 std::string setup_key(const Camera& camera, const CodeSet& code);
@@ -19,5 +30,20 @@ std::string setup_key(const Camera& camera, const DesignOptions& options, double
 /// @param setup  setup_key()
 std::string item_key(std::string_view setup, const OperatingRange& light,
                      const EvaluateOptions& options);
+
+/// Returns one line of JSON without the code's name.
+/// @param designed  the code, if it was designed for the item
+std::string item_result_json(const DepthErrorReport& report, const CodeSet* designed = nullptr);
+
+struct ItemResult {
+  DepthErrorReport error;
+  std::optional<CodeSet> designed;
+};
+
+/// @param code  name of the code
+/// @param file  the store, for errors
+/// @throws IoError naming file and member
+ItemResult parse_item_result(const std::string& json, const std::string& code,
+                             std::string_view file);
 
 }  // namespace tofsmith

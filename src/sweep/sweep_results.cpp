@@ -12,7 +12,7 @@
 
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/result_json.hpp"
-#include "sweep/item_result.hpp"
+#include "sweep/item_key.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/csv.hpp"
 #include "tofsmith/version.hpp"

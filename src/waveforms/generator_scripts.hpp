@@ -12,6 +12,10 @@
 
 namespace tofsmith {
 
+/// '#', number of digits, length, data (IEEE 488.2).
+/// @throws std::invalid_argument beyond 999999999 bytes
+std::vector<std::byte> ieee488_block(std::span<const std::byte> data);
+
 /// Steps for a request that fits the model.
 std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadRequest& request);
 std::vector<UploadStep> keysight_steps(const UploadRequest& request);

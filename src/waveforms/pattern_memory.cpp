@@ -4,9 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <iterator>
+#include <string>
 
 #include "core/shared/bits.hpp"
+#include "io/text/shared/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -94,6 +98,154 @@ std::vector<std::int32_t> codes_of(const PatternMemory& memory, const PatternFie
   for (const std::uint64_t word : memory.words)
     codes.push_back(static_cast<std::int32_t>(word >> field.first_bit & mask_of(field.bits)));
   return codes;
+}
+
+namespace {
+
+int hex_digits(const PatternMemory& memory) { return (memory.word_bits + 3) / 4; }
+
+/// Each line begins with `mark`.
+std::string heading(const PatternMemory& memory, std::string_view mark) {
+  memory.validate();
+  std::string text;
+  const auto line = [&](std::string_view words) {
+    fmt::format_to(std::back_inserter(text), "{} {}\n", mark, words);
+  };
+  LineCursor lines(memory.comment, "comment");
+  while (!lines.at_end()) {
+    // Control characters in a name, such as CR in VHDL, must not end the comment.
+    std::string words(lines.next());
+    std::ranges::replace_if(
+        words, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    line(words);
+  }
+  for (const PatternField& field : memory.fields)
+    line(field.bits == 1 ? fmt::format("bit {}: {}", field.first_bit, field.name)
+                         : fmt::format("bits {}..{}: {}", field.first_bit + field.bits - 1,
+                                       field.first_bit, field.name));
+  if (memory.points_per_exposure > 0)
+    line(fmt::format("word of point j of exposure e (both from 0): e * {} + j",
+                     memory.points_per_exposure));
+  return text;
+}
+
+/// Calls `write(out, word, is_last)`.
+template <typename Write>
+void each_word(std::string& text, const PatternMemory& memory, Write&& write) {
+  auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < memory.words.size(); ++i)
+    write(out, memory.words[i], i + 1 == memory.words.size());
+}
+
+std::string upper(std::string text) {
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return text;
+}
+
+/// Calls `constant(name, value)`.
+template <typename Constant>
+void each_constant(const PatternMemory& memory, Constant&& constant) {
+  constant("WORD_BITS", memory.word_bits);
+  constant("WORDS", static_cast<int>(memory.words.size()));
+  constant("POINTS_PER_EXPOSURE", memory.points_per_exposure);
+  for (const PatternField& field : memory.fields) {
+    constant(upper(field.name) + "_FIRST_BIT", field.first_bit);
+    constant(upper(field.name) + "_BITS", field.bits);
+  }
+}
+
+int c_word_bits(const PatternMemory& memory) {
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(8, memory.word_bits))));
+}
+
+}  // namespace
+
+std::string xilinx_coe(const PatternMemory& memory) {
+  std::string text =
+      heading(memory, ";") + "memory_initialization_radix=16;\nmemory_initialization_vector=\n";
+  each_word(text, memory, [&](auto out, std::uint64_t word, bool last) {
+    fmt::format_to(out, "{:0{}x}{}\n", word, hex_digits(memory), last ? ';' : ',');
+  });
+  return text;
+}
+
+std::string intel_mif(const PatternMemory& memory) {
+  std::string text = heading(memory, "--");
+  fmt::format_to(std::back_inserter(text),
+                 "DEPTH = {};\nWIDTH = {};\nADDRESS_RADIX = UNS;\nDATA_RADIX = HEX;\nCONTENT\n"
+                 "BEGIN\n",
+                 memory.words.size(), memory.word_bits);
+  std::size_t address = 0;
+  each_word(text, memory, [&](auto out, std::uint64_t word, bool) {
+    fmt::format_to(out, "{} : {:0{}X};\n", address++, word, hex_digits(memory));
+  });
+  return text + "END;\n";
+}
+
+std::string verilog_mem(const PatternMemory& memory) {
+  std::string text = heading(memory, "//");
+  each_word(text, memory, [&](auto out, std::uint64_t word, bool) {
+    fmt::format_to(out, "{:0{}x}\n", word, hex_digits(memory));
+  });
+  return text;
+}
+
+std::string systemverilog_package(const PatternMemory& memory) {
+  std::string text = heading(memory, "//");
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "package {}_pkg;\n", memory.name);
+  each_constant(memory, [&](const std::string& name, int value) {
+    fmt::format_to(out, "  localparam int {} = {};\n", name, value);
+  });
+  fmt::format_to(out, "  localparam logic [{}:0] {} [0:{}] = '{{\n", memory.word_bits - 1,
+                 upper(memory.name), memory.words.size() - 1);
+  each_word(text, memory, [&](auto to, std::uint64_t word, bool last) {
+    fmt::format_to(to, "    {}'h{:0{}x}{}\n", memory.word_bits, word, hex_digits(memory),
+                   last ? "" : ",");
+  });
+  return text + "  };\nendpackage\n";
+}
+
+std::string vhdl_package(const PatternMemory& memory) {
+  std::string text = heading(memory, "--");
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "library ieee;\nuse ieee.std_logic_1164.all;\n\npackage {}_pkg is\n",
+                 memory.name);
+  each_constant(memory, [&](const std::string& name, int value) {
+    fmt::format_to(out, "  constant {} : natural := {};\n", name, value);
+  });
+  fmt::format_to(out,
+                 "  type {0}_t is array (0 to {1}) of std_logic_vector({2} downto 0);\n"
+                 "  constant {3} : {0}_t := (\n",
+                 memory.name, memory.words.size() - 1, memory.word_bits - 1, upper(memory.name));
+  std::size_t address = 0;
+  each_word(text, memory, [&](auto to, std::uint64_t word, bool last) {
+    fmt::format_to(to, "    {} => \"{:0{}b}\"{}\n", address++, word, memory.word_bits,
+                   last ? "" : ",");
+  });
+  fmt::format_to(out, "  );\nend package {}_pkg;\n", memory.name);
+  return text;
+}
+
+std::string c_header(const PatternMemory& memory) {
+  std::string text = heading(memory, "//");
+  auto out = std::back_inserter(text);
+  const std::string prefix = upper(memory.name), guard = prefix + "_H";
+  fmt::format_to(out, "#ifndef {0}\n#define {0}\n\n#include <stdint.h>\n\n", guard);
+  each_constant(memory, [&](const std::string& name, int value) {
+    fmt::format_to(out, "#define {}_{} {}\n", prefix, name, value);
+  });
+  fmt::format_to(out, "\nstatic const uint{}_t {}[{}] = {{\n", c_word_bits(memory), memory.name,
+                 memory.words.size());
+  each_word(text, memory, [&](auto to, std::uint64_t word, bool last) {
+    fmt::format_to(to, "    0x{:0{}x}{}{}\n", word, hex_digits(memory),
+                   c_word_bits(memory) == 64 ? "u"
+                                               "ll"
+                                             : "u",
+                   last ? "" : ",");
+  });
+  return text + "};\n\n#endif\n";
 }
 
 }  // namespace tofsmith

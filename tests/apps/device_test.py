@@ -46,7 +46,7 @@ class Device(CommandLineTest):
 
     @needs_device
     def test_a_device_writes_the_same_files_as_the_cpu(self):
-        # See tests/gpu/device_pipeline_test.cpp for further combinations.
+        # See tests/gpu/device_test.cpp for further combinations.
         for more in ((), ("--average", "2", "--averaged", "3", "--memory-mb", "4"),
                      ("--filter", "strong", "--time-filter", "2", "--outputs", "averaged,bin"),
                      ("--average", "2", "--time-filter", "9", "--mixed", "label"),

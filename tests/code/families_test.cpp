@@ -9,7 +9,7 @@
 #include <set>
 
 #include "code/shared/hamiltonian.hpp"
-#include "code/shared/ramp.hpp"
+#include "code/shared/on_intervals.hpp"
 #include "code/square.hpp"
 
 namespace tofsmith {

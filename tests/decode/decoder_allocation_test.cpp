@@ -8,9 +8,8 @@
 #include <cstdlib>
 #include <new>
 
-#include "likelihood_setup.hpp"
+#include "decode_setup.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "unwrap_setup.hpp"
 
 namespace {
 std::atomic<std::int64_t> allocations{0};

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "decode/ambient_projection.hpp"
-#include "decode/filter/compared_rows.hpp"
+#include "decode/filter/filter_kernel.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"
 #include "tofsmith/core/error.hpp"

@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "core/shared/random.hpp"
-#include "decode/expected_noise.hpp"
+#include "decode/ambient_projection.hpp"
 #include "decode/search/chord_matcher.hpp"
 #include "decode/search/smooth_curve.hpp"
 #include "decode_setup.hpp"

@@ -12,7 +12,6 @@
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/decode/filter.hpp"
 #include "tofsmith/decode/merge_exposures.hpp"
-#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith {
 namespace {

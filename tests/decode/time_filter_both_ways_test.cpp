@@ -12,7 +12,7 @@
 #include "decode_setup.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/decode/time_filter.hpp"
+#include "tofsmith/decode/filter.hpp"
 
 namespace tofsmith {
 namespace {

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <functional>
 
-#include "decode/expected_noise.hpp"
+#include "decode/ambient_projection.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"
-#include "tofsmith/decode/time_filter.hpp"
+#include "tofsmith/decode/filter.hpp"
 
 namespace tofsmith {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "design/atlas/nearest_codes.hpp"
-#include "design/shortest_run.hpp"
+#include "design/run_lengths.hpp"
 #include "german_locale.hpp"
 #include "same_code.hpp"
 #include "small_design.hpp"
@@ -177,7 +177,7 @@ std::vector<Camera> other_cameras() {
     cameras.push_back(of.camera());
     of.taps = 2;
     cameras.push_back(of.camera());
-    cameras.push_back(small_camera("paper-30x", kind));
+    cameras.push_back(coarse_camera("paper-30x", kind));
   }
   for (Camera& camera : cameras) camera.operating.signal_e_per_s = {1e4, 1e5};
   return cameras;
@@ -288,14 +288,14 @@ TEST(Atlas, CodesOfEveryCameraCanBeFittedToEveryPeak) {
 }
 
 Camera power_limited() {
-  Camera camera = small_camera("paper-30x");
+  Camera camera = coarse_camera("paper-30x");
   camera.light.peak_factor = 5.0;
   return camera;
 }
 
 /// With gates of any duty, ambient light cancels in few differences of taps.
 Camera analog_difference() {
-  Camera camera = small_camera("paper-10f0");
+  Camera camera = coarse_camera("paper-10f0");
   const double f0_hz = camera.fundamental_frequency_hz;
   camera.light.peak_factor = 25.0;
   camera.light.impulse_response.f_max_hz = 3 * f0_hz;
@@ -319,7 +319,7 @@ TEST(Design, ReturnsACodeIfNoAtlasCodeIsUsable) {
 }
 
 TEST(Design, RejectsConstantLightWithThatReason) {
-  Camera camera = small_camera("paper-10f0");
+  Camera camera = coarse_camera("paper-10f0");
   camera.light.peak_factor = 1.0;
   EXPECT_THAT([&] { design(camera, with_effort({}, 0.0)); },
               ThrowsMessage<InvalidArgument>(

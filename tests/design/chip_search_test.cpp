@@ -13,7 +13,6 @@
 #include <set>
 
 #include "chip_setup.hpp"
-#include "design/chips/best_codes.hpp"
 #include "design/chips/chip_metric.hpp"
 #include "design/chips/exhaustive_search.hpp"
 #include "each_target.hpp"

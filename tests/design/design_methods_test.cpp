@@ -3,10 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
+
+#include "random_cameras.hpp"
+#include "sanitizers.hpp"
 #include "small_design.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 using testing::AllOf;
@@ -38,7 +45,7 @@ Camera clocked() {
 }
 
 TEST(DesignMethods, BestTriesEveryMethodAndPicksTheLowestError) {
-  const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  const Camera camera = coarse_camera("paper-5f0", DepthErrorKind::circular);
   const DesignResult result = design(camera, quick(DesignMethod::best, {3, 4}));
   for (const char* name : {"square-k4", "hamiltonian-k3-naive", "hamiltonian-k3-factorized",
                            "optimized-k3", "optimized-k4"})
@@ -73,7 +80,7 @@ TEST(DesignMethods, SearchesOnTheChipClockWithProof) {
 }
 
 TEST(DesignMethods, UnsuitableMethodsAreRejectedIfRequestedAndNotedOtherwise) {
-  Camera camera = small_camera("paper-30x");  // no band limit, no shortest pulse
+  Camera camera = coarse_camera("paper-30x");  // no band limit, no shortest pulse
   try {
     design(camera, quick(DesignMethod::optimize, {3}));
     ADD_FAILURE() << "accepted";
@@ -95,7 +102,7 @@ TEST(DesignMethods, SharedReasonsAreReportedOnce) {
 }
 
 TEST(DesignMethods, RobustCodesAreChosenByTheWorstPerturbedCamera) {
-  const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  const Camera camera = coarse_camera("paper-5f0", DepthErrorKind::circular);
   DesignOptions options = quick(DesignMethod::optimize, {3});
   options.robust = true;
   const DesignResult result = design(camera, options);
@@ -108,14 +115,14 @@ TEST(DesignMethods, RobustCodesAreChosenByTheWorstPerturbedCamera) {
 }
 
 TEST(DesignMethods, TheWinnerIsEvaluatedOnPerturbedCameras) {
-  const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  const Camera camera = coarse_camera("paper-5f0", DepthErrorKind::circular);
   const DesignResult result = design(camera, small_options());
   for (const Candidate& c : result.candidates)
     EXPECT_EQ(c.robustness.has_value(), &c == &result.winner()) << c.code.name();
 }
 
 TEST(DesignMethods, ExplainTheWinnerInThreeSentences) {
-  const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  const Camera camera = coarse_camera("paper-5f0", DepthErrorKind::circular);
   const DesignResult result = design(camera, small_options());
   ASSERT_EQ(result.explanation.size(), 3u);
   EXPECT_THAT(result.explanation[0], HasSubstr(result.winner().code.name()));
@@ -138,7 +145,7 @@ TEST(SuggestedExposures, DecreaseWithTapsAndIncreaseWithBandwidth) {
 }
 
 TEST(GainOver, IsTheRatioOfChosenErrorsWithItsStandardError) {
-  const DesignResult result = design(small_camera("paper-5f0"), small_options());
+  const DesignResult result = design(coarse_camera("paper-5f0"), small_options());
   EXPECT_EQ(gain_over(result, result.winner(), DepthErrorKind::linear).value, 1.0);
   for (const Candidate& c : result.candidates) {
     const Estimate gain = gain_over(result, c, DepthErrorKind::linear);
@@ -152,5 +159,188 @@ TEST(GainOver, IsTheRatioOfChosenErrorsWithItsStandardError) {
   }
 }
 
+// A larger search space or a longer search never yields a worse code.
+
+/// An optimization for this camera takes about a second.
+Camera small_camera(DepthErrorKind error, int taps) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.light.peak_factor = 6.0;
+  camera.samples = 60;
+  camera.operating.signal_e_per_s = {1e4};
+  camera.operating.ambient_e_per_s = {1e4};
+  camera.operating.error = error;
+  camera.sensor.taps = taps;
+  if (taps == 2) camera.sensor.readout = Readout::difference;
+  return camera;
+}
+
+/// Descents of few steps, in the usual number.
+DesignOptions short_descents() {
+  DesignOptions options;
+  options.method = DesignMethod::optimize;
+  options.exposures = {4};
+  options.baselines.emplace();
+  options.trials = 2000;
+  options.optimize.samples = 24;
+  options.optimize.steps_per_start = 6;
+  options.optimize.steps_per_hop = 6;
+  options.optimize.polish_steps = 10;
+  options.optimize.trials_per_step = 16;
+  options.optimize.pool_trials = 1000;
+  return options;
+}
+
+double error_m(const Camera& camera, const DesignOptions& options) {
+  return geometric_mean_error_m(design(camera, options).winner().error, camera.operating.error);
+}
+
+TEST(Superset, ArbitraryWaveformsAreNoWorseThanBinaryOnes) {
+  DesignOptions options = short_descents();
+  options.optimize.starts = 4;
+  options.optimize.hops = 5;
+  options.optimize.refinement_steps = 40;
+  for (const DepthErrorKind error : {DepthErrorKind::circular, DepthErrorKind::linear})
+    for (const int taps : {1, 2}) {
+      const Camera switching = small_camera(error, taps);
+      Camera light = switching, both = switching;
+      light.light.binary = both.light.binary = both.sensor.binary = false;
+      const double switching_m = error_m(switching, options);
+      EXPECT_LE(error_m(light, options), switching_m);
+      EXPECT_LE(error_m(both, options), switching_m);
+    }
+}
+
+TEST(Superset, MoreEffortIsNeverWorse) {
+  for (const int taps : {1, 2}) {
+    const Camera camera = small_camera(DepthErrorKind::circular, taps);
+    const double usual_m = error_m(camera, short_descents());
+    const double twice_m = error_m(camera, with_effort(short_descents(), 2.0));
+    EXPECT_LE(twice_m, usual_m);
+    EXPECT_LE(error_m(camera, with_effort(short_descents(), 4.0)), twice_m);
+  }
+}
+
+TEST(Superset, TwiceTheEffortIncludesTheCodesOfTheDefault) {
+  const Camera camera = small_camera(DepthErrorKind::circular, 1);
+  const auto codes = [&](double effort) {
+    return optimize(camera, 4, with_effort(short_descents(), effort).optimize);
+  };
+  const std::vector<Candidate> usual = codes(1.0), twice = codes(2.0);
+  ASSERT_EQ(usual.size(), 1u);
+  ASSERT_EQ(twice.size(), 2u);
+  for (std::size_t k = 0; k < usual.size(); ++k)
+    for (int e = 0; e < 4; ++e) {
+      EXPECT_EQ(usual[k].code.modulation(e), twice[k].code.modulation(e));
+      EXPECT_EQ(usual[k].code.demodulation(e), twice[k].code.demodulation(e));
+    }
+}
+
+TEST(MixerDesign, EqualsThatOfTwoBucketsReadAsADifference) {
+  Camera camera = small_camera(DepthErrorKind::circular, 1);
+  camera.sensor.demodulation = Demodulation::weight;
+  DesignOptions options = short_descents();
+  options.optimize.starts = 4;
+  options.optimize.hops = 5;
+  options.optimize.refinement_steps = 40;
+  const std::vector<CodeSet> also = {build_family("hamiltonian-k4", camera)};
+  const std::vector<CodeSet> of_buckets = {also[0].buckets_of_signed()};
+  const std::vector<Candidate> found = optimize(camera, 4, options.optimize, also);
+  const std::vector<Candidate> expected =
+      optimize(in_buckets(camera), 4, options.optimize, of_buckets);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_FALSE(why_not_playable(found[k].code, camera));
+    EXPECT_EQ(found[k].per_measurement.size(), 4u);
+    for (int e = 0; e < 4; ++e)
+      EXPECT_EQ(found[k].code.demodulation(e), expected[k].code.demodulation(2 * e));
+  }
+
+  options.baselines = {"hamiltonian-k4", "sinusoid-k4"};
+  for (const bool binary : {true, false}) {
+    camera.sensor.binary = binary;
+    const DesignResult result = design(camera, options);
+    EXPECT_TRUE(result.winner().code.is_signed());
+    EXPECT_TRUE(result.find("hamiltonian-k4"));
+  }
+  options.method = DesignMethod::factorize;
+  options.target = targets_of(build_family("hamiltonian-k4", small_camera({}, 1)));
+  const DesignResult factorized = design(camera, options);
+  EXPECT_TRUE(factorized.find("hamiltonian-k4-factorized")->code.is_signed());
+}
+
+TEST(MixerDesign, RejectsUnsupportedRequests) {
+  Camera camera = small_camera(DepthErrorKind::circular, 1);
+  camera.sensor.demodulation = Demodulation::weight;
+  camera.light.impulse_response = camera.sensor.impulse_response = {};
+  camera.sensor.shortest_pulse_s = 1.0 / (8 * camera.fundamental_frequency_hz);
+  DesignOptions options = short_descents();
+  const auto refusal = [&] {
+    try {
+      design(camera, options);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  options.method = DesignMethod::search;
+  EXPECT_THAT(refusal(), HasSubstr("sensor.demodulation = signed; must be"));
+  options.method = DesignMethod::optimize;
+  camera.sensor.tap_mismatch = 0.1;
+  EXPECT_THAT(refusal(), HasSubstr("sensor.tap_mismatch = 0.1; must be 0"));
+}
+
+// Design for any camera returns a code or a message with the limiting setting.
+//
+//   TOFSMITH_ALL_RANDOM_CAMERAS=1 test_design --gtest_filter='RandomCameras.*'
+//
+// tests 1000 cameras without search, some of them against all standard codes, and 50 with the
+// default effort. Otherwise a fixed subset is tested with little effort.
+
+constexpr std::uint64_t seed = 1;
+
+bool all_are_tried() { return std::getenv("TOFSMITH_ALL_RANDOM_CAMERAS") != nullptr; }
+
+/// Returns whether a setting can by itself make depth measurement impossible.
+bool names_a_physical_reason(const std::string& field) {
+  for (const char* known : {"light.peak_factor", "number of exposure_s", "number of playback.order",
+                            "sensor.taps", "codes that measure depth"})
+    if (field == known) return true;
+  return false;
+}
+
+void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
+  const Camera camera = random_camera(seed, index);
+  SCOPED_TRACE(camera.name);
+  ASSERT_NO_THROW(camera.validate());
+  DesignOptions options = with_effort({}, effort);
+  options.trials = 1000;
+  // Searching all standard codes for contenders takes seconds.
+  if (index % 16 != 0 || !all_are_tried())
+    options.baselines = {"sinusoid-k3", "square-k4", "hamiltonian-k4"};
+  try {
+    const DesignResult result = design(camera, options);
+    EXPECT_EQ(why_not_playable(result.winner().code, camera), std::nullopt);
+    for (const Candidate& c : result.candidates)
+      EXPECT_TRUE(std::isfinite(c.error.circular.geometric_mean_m.value)) << c.code.name();
+  } catch (const InvalidArgument& refusal) {
+    EXPECT_TRUE(names_a_physical_reason(refusal.field())) << refusal.what();
+    EXPECT_LT(std::string(refusal.what()).size(), 700u) << refusal.what();
+  }
+}
+
+TEST(RandomCameras, GiveACodeOrAReasonWithoutEffort) {
+  const std::uint64_t cameras = all_are_tried() ? 1000 : repetitions(25u);
+  const std::uint64_t step = all_are_tried() ? 1 : 40;
+  for (std::uint64_t i = 0; i < cameras; ++i) expect_a_code_or_a_reason(step * i, 0.0);
+}
+
+TEST(RandomCameras, GiveACodeOrAReasonForEveryMethod) {
+  const std::uint64_t cameras = all_are_tried() ? 50 : repetitions(2u);
+  const std::uint64_t first = 1000, step = all_are_tried() ? 1 : 12;
+  const double effort = all_are_tried() ? 1.0 : 0.01;
+  for (std::uint64_t i = 0; i < cameras; ++i) expect_a_code_or_a_reason(first + step * i, effort);
+}
+
 }  // namespace
+
 }  // namespace tofsmith

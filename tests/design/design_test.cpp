@@ -19,18 +19,18 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 Camera two_bucket() {
-  Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  Camera camera = coarse_camera("paper-10f0", DepthErrorKind::circular);
   camera.sensor.taps = 2;
   return camera;
 }
 Camera analog() {
-  Camera camera = small_camera("paper-5f0");
+  Camera camera = coarse_camera("paper-5f0");
   camera.light.binary = camera.sensor.binary = false;
   camera.sensor.noise = NoiseModel::poisson;
   return camera;
 }
 Camera weak() {
-  Camera camera = small_camera("paper-30x");
+  Camera camera = coarse_camera("paper-30x");
   camera.light.peak_factor = 3.0;
   return camera;
 }
@@ -52,7 +52,7 @@ void expect_best_wins(const Camera& camera, const DesignResult& result, const st
 
 TEST(Design, WinnerIsNeverWorseThanTheNaiveCodeOrAnyBaseline) {
   for (const Camera& camera :
-       {small_camera("paper-5f0"), small_camera("paper-5f0", DepthErrorKind::circular), weak(),
+       {coarse_camera("paper-5f0"), coarse_camera("paper-5f0", DepthErrorKind::circular), weak(),
         two_bucket(), analog()}) {
     const DesignResult result = design(camera, small_options());
     expect_best_wins(camera, result, "hamiltonian-k3-naive");
@@ -71,7 +71,7 @@ TEST(Design, WinnerIsNeverWorseThanTheNaiveCodeOrAnyBaseline) {
 }
 
 TEST(Design, ATargetWithoutDepthInformationIsExcludedWithAReason) {
-  const Camera camera = small_camera("paper-10f0");
+  const Camera camera = coarse_camera("paper-10f0");
   DesignOptions options = small_options();
   const Eigen::MatrixXd constant = Eigen::MatrixXd::Constant(camera.samples, 3, 0.5);
   options.target = targets_from_table("constant", constant, camera.samples, false);
@@ -84,7 +84,7 @@ TEST(Design, ATargetWithoutDepthInformationIsExcludedWithAReason) {
 }
 
 TEST(Design, ErrorEqualsThatOfEvaluateWithTheSameSeed) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const DesignOptions options = small_options();
   const Candidate winner = design(camera, options).winner();
   const DepthErrorReport again =
@@ -94,7 +94,7 @@ TEST(Design, ErrorEqualsThatOfEvaluateWithTheSameSeed) {
 }
 
 TEST(Design, ApproximatesAUserTarget) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   DesignOptions options = small_options();
   options.target = targets_of(build_family("square-k3", camera));
   const DesignResult known = design(camera, options);
@@ -111,7 +111,7 @@ TEST(Design, ApproximatesAUserTarget) {
 }
 
 TEST(Design, BinaryArmsGetBinaryWaveformsOfASmoothTarget) {
-  const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  const Camera camera = coarse_camera("paper-5f0", DepthErrorKind::circular);
   DesignOptions options = small_options();
   options.target = targets_of(build_family("sinusoid-k3", camera));
   const DesignResult result = design(camera, options);
@@ -123,7 +123,7 @@ TEST(Design, BinaryArmsGetBinaryWaveformsOfASmoothTarget) {
 }
 
 TEST(Design, ReusesTheStoreAndSavesNewDesigns) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   std::vector<Candidate> saved;
   DesignStore store{.load = [](const std::string&) { return std::vector<Candidate>(); },
                     .save =
@@ -150,7 +150,7 @@ TEST(Design, ReusesTheStoreAndSavesNewDesigns) {
 }
 
 TEST(Design, ExcludesFamiliesThatDoNotSuitTheCameraWithAReason) {
-  Camera camera = small_camera("paper-5f0");
+  Camera camera = coarse_camera("paper-5f0");
   camera.exposure_s.each_s = {0.1, 0.1, 0.1};
   DesignOptions options = small_options();
   options.baselines = {"sinusoid-k4", "sinusoid-k3", "sinusoid-x"};
@@ -172,7 +172,7 @@ TEST(Design, StopsOnRequestAtAnyTime) {
       return ++calls < last;
     };
   };
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   design(camera, small_options(), stop_at(1 << 30));
   const int all = calls;
   for (const int last : {1, all / 2, all})
@@ -211,7 +211,7 @@ TEST(Design, RejectsInvalidRequestsBeforeAnyWork) {
   const auto with = [](auto&& change) {
     DesignOptions options = small_options();
     change(options);
-    return refusal(small_camera("paper-5f0"), options);
+    return refusal(coarse_camera("paper-5f0"), options);
   };
   EXPECT_THAT(with([](auto& o) { o.exposures = {7}; }), HasSubstr("DesignOptions::exposures = 7"));
   EXPECT_THAT(with([](auto& o) { o.exposures = {3, 3}; }), HasSubstr("must be listed once"));
@@ -238,17 +238,17 @@ TEST(Design, RejectsInvalidRequestsBeforeAnyWork) {
                 o.target = targets_from_table("two", Eigen::MatrixXd::Identity(4, 2), 60, false);
               }),
               HasSubstr("number of correlation functions = 2"));
-  Camera camera = small_camera("paper-5f0");
+  Camera camera = coarse_camera("paper-5f0");
   camera.sensor.taps = 3;
   EXPECT_THAT(refusal(camera, small_options()), HasSubstr("sensor.taps = 3"));
-  camera = small_camera("paper-5f0");
+  camera = coarse_camera("paper-5f0");
   camera.exposure_s.each_s = {0.1, 0.2};
   EXPECT_THAT(refusal(camera, small_options()), HasSubstr("3 exposures of hamiltonian-k3"));
 }
 
 TEST(ChooseByDepthError, IsNeverWorseThanEitherStart) {
   for (const bool rotated : {false, true}) {
-    const Camera camera = small_camera("paper-5f0");
+    const Camera camera = coarse_camera("paper-5f0");
     const TargetSet targets = targets_of(build_family("hamiltonian-k3", weak()));
     std::vector<Factorization> factorizations;
     for (const CorrelationTarget& target : targets.measurements)

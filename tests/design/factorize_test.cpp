@@ -8,8 +8,6 @@
 #include "core/shared/random.hpp"
 #include "design/factorize/alternation.hpp"
 #include "design/factorize/edge_refinement.hpp"
-#include "design/factorize/point_settling.hpp"
-#include "design/factorize/start_pool.hpp"
 #include "design/run_lengths.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"

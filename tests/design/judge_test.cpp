@@ -13,12 +13,14 @@
 
 #include "core/shared/random.hpp"
 #include "design/baselines.hpp"
+#include "design/explanation.hpp"
 #include "same_code.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 #include "small_design.hpp"
 #include "tofsmith/code/families.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 using testing::Contains;
@@ -44,7 +46,7 @@ void expect_same_waveforms(const CodeSet& judged, CodeSet code) {
 
 TEST(Judge, TheWinnerIsNeverWorseThanAnyCandidateGiven) {
   for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
-    const Camera camera = small_camera("paper-10f0", kind);
+    const Camera camera = coarse_camera("paper-10f0", kind);
     const DesignOptions options = small_options();
     const DesignResult result = judge(camera, families(camera), options);
     ASSERT_EQ(result.candidates.size(), 3u);
@@ -56,7 +58,7 @@ TEST(Judge, TheWinnerIsNeverWorseThanAnyCandidateGiven) {
 }
 
 TEST(Judge, RanksLikeDesign) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const DesignOptions options = small_options();
   DesignStore store;
   std::vector<Candidate> made;
@@ -77,7 +79,7 @@ TEST(Judge, RanksLikeDesign) {
 }
 
 TEST(Judge, CountsOutliersBeyondTheConfiguredThreshold) {
-  const Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  const Camera camera = coarse_camera("paper-10f0", DepthErrorKind::circular);
   DesignOptions options = small_options();
   const DesignResult usual = judge(camera, families(camera), options);
   options.outlier_threshold_m = 0.01;
@@ -93,7 +95,7 @@ TEST(Judge, CountsOutliersBeyondTheConfiguredThreshold) {
 }
 
 TEST(Judge, KeepsTheBestOfCandidatesWithEqualNames) {
-  const Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  const Camera camera = coarse_camera("paper-10f0", DepthErrorKind::circular);
   std::vector<Candidate> attempts = {candidate_of("sinusoid-k4", camera, "mine"),
                                      candidate_of("square-k4", camera),
                                      candidate_of("hamiltonian-k4", camera, "mine")};
@@ -110,7 +112,7 @@ TEST(Judge, KeepsTheBestOfCandidatesWithEqualNames) {
 }
 
 TEST(Judge, ExcludesCodesWithoutDepthInformation) {
-  const Camera camera = small_camera("paper-10f0");
+  const Camera camera = coarse_camera("paper-10f0");
   std::vector<Candidate> candidates = families(camera);
   const std::vector<Waveform> flat(3, Waveform::constant(1.0));
   candidates.push_back({.code = CodeSet::create("flat", camera.samples, 1, flat, flat),
@@ -124,7 +126,7 @@ TEST(Judge, ExcludesCodesWithoutDepthInformation) {
 }
 
 TEST(Judge, CountsAllShiftsOfTheOrigin) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const DesignResult once = judge(camera, {{.code = code, .method = "family"}}, small_options());
   const DesignResult twice = judge(camera, once.candidates, small_options());
@@ -147,7 +149,7 @@ TEST(BestOfRotations, IsTheFirstOfTheSmallestAndIdempotent) {
 }
 
 TEST(WhyNoDepth, CoversAllReasonsForNotMeasuringDepth) {
-  const Camera camera = small_camera("paper-10f0");
+  const Camera camera = coarse_camera("paper-10f0");
   EXPECT_FALSE(why_no_depth(build_family("hamiltonian-k4", camera), camera));
   Camera dim = camera;
   dim.light.peak_factor = 1.0;
@@ -155,7 +157,7 @@ TEST(WhyNoDepth, CoversAllReasonsForNotMeasuringDepth) {
 }
 
 TEST(SuggestedBaselines, MatchTheMethod) {
-  const Camera camera = small_camera("paper-10f0");
+  const Camera camera = coarse_camera("paper-10f0");
   DesignOptions options;
   EXPECT_EQ(suggested_baselines(camera, options).size(), 8u);
   options.method = DesignMethod::factorize;
@@ -189,7 +191,7 @@ TEST(OtherFamilies, AreAllSuitableBuiltInCodesIfFewEnough) {
 TEST(ContendingFamilies, IncludeTheBestOfAllFamilies) {
   for (const auto& [taps, kind] :
        {std::pair(1, DepthErrorKind::linear), std::pair(2, DepthErrorKind::circular)}) {
-    Camera camera = small_camera("paper-10f0", kind);
+    Camera camera = coarse_camera("paper-10f0", kind);
     camera.sensor.taps = taps;
     std::vector<std::string> names = other_families(camera, {});
     std::erase_if(names, [](const std::string& name) { return name.find("-1x4") < name.size(); });
@@ -212,7 +214,7 @@ TEST(ContendingFamilies, IncludeTheBestOfAllFamilies) {
 }
 
 TEST(ContendingFamilies, ReportWhyOthersCannotCompete) {
-  Camera camera = small_camera("paper-10f0");
+  Camera camera = coarse_camera("paper-10f0");
   camera.sensor.taps = 2;
   camera.sensor.shortest_pulse_s = 0.2 / camera.fundamental_frequency_hz;
   const Contenders contenders =
@@ -227,7 +229,7 @@ TEST(ContendingFamilies, ReportWhyOthersCannotCompete) {
 }
 
 TEST(Design, TriesEveryBuiltInCodeAndReportsThoseNotJudged) {
-  Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  Camera camera = coarse_camera("paper-10f0", DepthErrorKind::circular);
   camera.sensor.taps = 2;
   DesignOptions options = small_options();
   options.method = DesignMethod::optimize;
@@ -248,7 +250,7 @@ TEST(Design, TriesEveryBuiltInCodeAndReportsThoseNotJudged) {
 }
 
 TEST(RankingError, IsOfTheKindAndStatisticOfTheCamera) {
-  Camera camera = small_camera("paper-10f0");
+  Camera camera = coarse_camera("paper-10f0");
   Candidate candidate = candidate_of("sinusoid-k4", camera);
   candidate.error.linear.geometric_mean_m.value = 1.0;
   candidate.error.circular.geometric_mean_m.value = 2.0;
@@ -265,7 +267,7 @@ TEST(RankingError, IsOfTheKindAndStatisticOfTheCamera) {
 }
 
 TEST(Judge, RejectsRootMeanSquaresWhereOnlyMeansAreKnown) {
-  Camera camera = small_camera("paper-10f0");
+  Camera camera = coarse_camera("paper-10f0");
   camera.operating.statistic = ErrorStatistic::rmse;
   DesignOptions options = small_options();
   options.robust = true;
@@ -278,7 +280,7 @@ TEST(Judge, RejectsRootMeanSquaresWhereOnlyMeansAreKnown) {
 }
 
 TEST(Judge, RanksByTheErrorWithOtherCameras) {
-  Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  Camera camera = coarse_camera("paper-10f0", DepthErrorKind::circular);
   camera.operating.signal_e_per_s = {1e6};
   camera.operating.ambient_e_per_s = {1e5};
   const DesignOptions options = small_options();
@@ -304,7 +306,7 @@ TEST(Judge, RanksByTheErrorWithOtherCameras) {
 }
 
 TEST(DesignSeed, IsPassedToFactorization) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   DesignOptions options = small_options();
   options.factorize.structured_starts = false;
   const auto factorized = [&](std::uint64_t seed, std::uint64_t factorize_seed) {
@@ -315,5 +317,23 @@ TEST(DesignSeed, IsPassedToFactorization) {
   expect_same_code(factorized(7, 1), factorized(7, 2));
 }
 
+using testing::Not;
+
+std::string limit_of(double bound_over_error) {
+  const Camera camera = coarse_camera("paper-10f0");
+  DesignResult result = judge(
+      camera, {{.code = build_family("sinusoid-k4", camera), .method = "family"}}, small_options());
+  for (PointDepthError& p : result.candidates[0].error.points)
+    p.cramer_rao_mae_m = bound_over_error * p.circular_mde_m.value;
+  return explain(camera, result)[2];
+}
+
+TEST(Explanation, NeverReportsAnErrorBelowItsBoundAsARatio) {
+  EXPECT_THAT(limit_of(0.8), HasSubstr("1.25 times the Cramer-Rao bound of the code"));
+  EXPECT_THAT(limit_of(100), HasSubstr("correlation functions are nearly flat at some depth"));
+  EXPECT_THAT(limit_of(100), Not(HasSubstr("times the Cramer-Rao bound of the code")));
+}
+
 }  // namespace
+
 }  // namespace tofsmith

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "io/images/exr.hpp"
-#include "io/images/pfm.hpp"
+#include "io/images/netpbm.hpp"
 #include "reader.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/code/families.hpp"

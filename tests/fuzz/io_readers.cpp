@@ -5,7 +5,7 @@
 #include "io/documents/lens_calibration.hpp"
 #include "io/images/exr.hpp"
 #include "io/images/grey_image.hpp"
-#include "io/images/pfm.hpp"
+#include "io/images/netpbm.hpp"
 #include "io/images/raw_dump_reader.hpp"
 #include "reader.hpp"
 #include "tiff_writer.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "reader.hpp"
-#include "sweep/item_result.hpp"
+#include "sweep/item_key.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 

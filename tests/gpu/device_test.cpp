@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 
 #include "device_setup.hpp"
+#include "gpu/device_frames.hpp"
 #include "gpu/device_queue.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 using testing::HasSubstr;
@@ -89,5 +91,141 @@ TEST_F(DeviceQueues, WaitForOneAnotherOnRequest) {
   }
 }
 
+class DevicePipelines : public OnDevice {
+ protected:
+  static constexpr int height = 45, width = 34, frames = 5;
+
+  DevicePipelines() : setup_("hamiltonian-k4", camera_with("paper-10f0")) {
+    for (std::uint64_t f = 0; f < frames; ++f)
+      raw_.push_back(noisy_pixels(setup_.decoder.table(), 1e5, 1e4, height * width, f + 1));
+  }
+
+  std::unique_ptr<FrameBackend> backend(std::string_view device_name,
+                                        DecodeMethod method = DecodeMethod::zncc) const {
+    return frame_backend(device_name, make_decoder(method, setup_.decoder.table()));
+  }
+
+  /// Frames are filtered again without mixed pixels.
+  static std::vector<Outputs> decoded(const FrameBackend& backend, const FrameSteps& steps,
+                                      const PlaneCorrections& corrections,
+                                      const std::vector<std::vector<float>>& raw) {
+    const std::unique_ptr<FramePipeline> pipeline = backend.prepare(steps, height, width);
+    std::vector<Outputs> all;
+    const auto decode = [&] {
+      Outputs& outputs = all.emplace_back(static_cast<std::size_t>(height) * width);
+      decode_frame(*pipeline, corrections, 0, height, outputs.view());
+      if (steps.keeps_filtered) {
+        EXPECT_EQ(pipeline->numbers().pixels(), height * width);
+      }
+    };
+    for (std::size_t f = 0; f < raw.size(); ++f) {
+      const bool completes = (f + 1) % static_cast<std::size_t>(steps.average) == 0;
+      if (pipeline->submit(RawView::interleaved(raw[f].data(), height, width, 4), completes))
+        decode();
+    }
+    while (pipeline->submit_end()) decode();
+    return all;
+  }
+
+  DecodeSetup setup_;
+  std::vector<std::vector<float>> raw_;
+};
+
+TEST_F(DevicePipelines, EqualTheCpu) {
+  const Filter light(setup_.decoder.table(), FilterOptions::of(FilterStrength::light)),
+      normal(setup_.decoder.table());
+  const TimeFilterOptions in_time{.max_frames = 3}, ahead{.max_frames = 3, .look_ahead = 2};
+  const std::vector<FrameSteps> all_steps = {{},
+                                             {.filter = &light},
+                                             {.filter = &normal},
+                                             {.time_filter = in_time},
+                                             {.time_filter = in_time, .filter = &light},
+                                             {.time_filter = ahead},
+                                             {.time_filter = ahead, .filter = &light},
+                                             {.average = 2, .averaged = 3.0},
+                                             {.average = 2, .filter = &light},
+                                             {.average = 2, .time_filter = in_time},
+                                             {.average = 2, .time_filter = ahead}};
+  const std::unique_ptr<FrameBackend> here = backend("cpu"), there = backend("0");
+  EXPECT_EQ(here->device(), "cpu");
+  EXPECT_EQ(there->device(), device().info().name);
+  for (FrameSteps steps : all_steps)
+    for (const bool finds_mixed : {false, true}) {
+      PlaneCorrections corrections;
+      if (finds_mixed) corrections.mixed = MixedPixels::label;
+      steps.keeps_filtered = finds_mixed;
+      const std::vector<Outputs> expected = decoded(*here, steps, corrections, raw_),
+                                 found = decoded(*there, steps, corrections, raw_);
+      ASSERT_EQ(found.size(), expected.size());
+      EXPECT_EQ(found.size(), (raw_.size() + static_cast<std::size_t>(steps.average) - 1) /
+                                  static_cast<std::size_t>(steps.average));
+      for (std::size_t f = 0; f < found.size(); ++f)
+        expect_alike(device().info(), true, found[f], expected[f], 1e6);
+    }
+}
+
+TEST_F(DevicePipelines, FilterWithoutDecoding) {
+  const Filter filter(setup_.decoder.table());
+  const FrameSteps steps{.filter = &filter, .keeps_filtered = true};
+  const RawView raw = RawView::interleaved(raw_[0].data(), height, width, 4);
+  const FilteredFrame expected = [&] {
+    FilteredFrame frame;
+    filter.apply(raw, frame);
+    return frame;
+  }();
+  for (const char* name : {"cpu", "0"}) {
+    const std::unique_ptr<FrameBackend> on = backend(name);
+    const std::unique_ptr<FramePipeline> pipeline = on->prepare(steps, height, width);
+    EXPECT_TRUE(pipeline->submit(raw));
+    std::vector<float> found(raw_[0].size());
+    copy_pixels(pipeline->numbers(), 0, height * width, found.data());
+    if (device().info().divides_as_processor) {
+      EXPECT_EQ(found, expected.values().values) << name;
+    }
+  }
+}
+
+TEST_F(DevicePipelines, NeedNoHostMemoryForDataOnTheDevice) {
+  const FrameSteps steps{.time_filter = TimeFilterOptions{}};
+  const auto whole = [&](const char* name) {
+    return backend(name)->prepare(steps, height, width)->memory(frames).whole;
+  };
+  EXPECT_EQ(whole("0"), 0.0);
+  EXPECT_GT(whole("cpu"), 4.0 * height * width * 6);
+}
+
+TEST_F(DevicePipelines, LeaveSmallAndUnfilteredFramesToTheCpuIfAutomatic) {
+  int searches = 0;
+  const auto find_device = [&] {
+    ++searches;
+    return std::optional(device());
+  };
+  const std::unique_ptr<FrameBackend> on =
+      automatic_backend(find_device, make_decoder(DecodeMethod::zncc, setup_.decoder.table()), {});
+  const Filter filter(setup_.decoder.table(), FilterOptions::of(FilterStrength::light));
+  const auto host_bytes = [&](const Filter* in_space, int rows) {
+    const FrameSteps steps{.time_filter = TimeFilterOptions{}, .filter = in_space};
+    return on->prepare(steps, rows, 1000)->memory(frames).whole;
+  };
+  EXPECT_GT(host_bytes(nullptr, 1000), 0.0);  // on the CPU
+  EXPECT_GT(host_bytes(&filter, 74), 0.0);
+  EXPECT_EQ(on->device(), "cpu");
+  EXPECT_EQ(searches, 0);
+  EXPECT_EQ(host_bytes(&filter, 75), 0.0);
+  EXPECT_EQ(host_bytes(&filter, 76), 0.0);
+  EXPECT_EQ(on->device(), device().info().name);
+  EXPECT_EQ(searches, 1);
+}
+
+TEST_F(DevicePipelines, AreChosenByName) {
+  EXPECT_EQ(backend("auto", DecodeMethod::ml)->device(), "cpu");
+  EXPECT_THROW(backend("0", DecodeMethod::ml), InvalidArgument);
+  EXPECT_THROW(backend("no such device"), IoError);
+  EXPECT_THROW(frame_backend("0", make_decoder(DecodeMethod::zncc, setup_.decoder.table()),
+                             {.memory_mb = 0.0}),
+               InvalidArgument);
+}
+
 }  // namespace
+
 }  // namespace tofsmith

@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <locale>
+#include <nlohmann/json.hpp>
 
 #include "damaged_files.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
@@ -17,6 +20,7 @@
 #include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 using testing::HasSubstr;
@@ -188,5 +192,213 @@ TEST(PublishedCodes, AllLoadAndCorrelateLikeTheirFiles) {
   EXPECT_GT(files, 0);
 }
 
+using nlohmann::json;
+
+/// One binary and one sampled waveform per tap, and values without a finite decimal representation.
+CodeSet awkward_code() {
+  Eigen::VectorXd light(4), gains(4);
+  light << 1.0 / 3, 0.1, 0.0, 4 - 0.1 - 1.0 / 3;
+  gains << 0.0, 1.0 / 7, 0.5, 5e-324;
+  CodeSet code = CodeSet::create(
+      "two \"taps\" \xc3\xa9", 4, 2,
+      {Waveform::binary({{1.0 / 9, 0.3}, {0.9, 1.1}}, 2.0), Waveform::sampled(light)},
+      {square_wave(1, 0.25), Waveform::constant(0.0), Waveform::sampled(gains),
+       Waveform::sampled(0.5 * gains)});
+  code.provenance = {"factorize", "my camera",    18446744073709551615ull,
+                     "0.1.0",     {0.1, 1.0 / 3}, 0.02};
+  return code;
+}
+
+json changed(const std::string& pointer, const json& value) {
+  json document = json::parse(code_to_json(awkward_code()));
+  document[json::json_pointer(pointer)] = value;
+  return document;
+}
+json without(const std::string& parent, const std::string& member) {
+  json document = json::parse(code_to_json(awkward_code()));
+  document[json::json_pointer(parent)].erase(member);
+  return document;
+}
+std::string refusal(const json& document) {
+  return io_error_of([&] { parse_code_json(document.dump(), "c.json"); });
+}
+
+TEST(CodeJson, ReadingUndoesWriting) {
+  expect_same_code(parse_code_json(code_to_json(awkward_code())), awkward_code());
+  for (const FamilyDescription& family : list_families()) {
+    const CodeSet code = make_family(family.example, {});
+    expect_same_code(parse_code_json(code_to_json(code)), code);
+  }
+}
+
+TEST(CodeJson, IsReadable) {
+  const CodeSet code = CodeSet::create("k1", 8, 1, {rectangular_pulse(0.25)}, {square_wave(1, 0)});
+  EXPECT_EQ(code_to_json(code), R"({
+  "format": "tofsmith-code",
+  "version": 1,
+  "name": "k1",
+  "samples": 8,
+  "exposures": 1,
+  "taps": 1,
+  "modulation": [
+    {"kind": "binary", "level": 4.0, "on": [[0.0, 0.25]]}
+  ],
+  "demodulation": [
+    {"kind": "binary", "level": 1.0, "on": [[0.0, 0.5]]}
+  ],
+  "provenance": {
+    "method": "",
+    "camera": "",
+    "seed": 0,
+    "version": "",
+    "residuals": [],
+    "depth_error_m": 0.0
+  }
+}
+)");
+}
+
+TEST(CodeJson, KeepsTheExposureSharesOfACode) {
+  const std::vector<double> shares{0.4, 0.3, 0.2, 0.1};
+  const CodeSet code = make_family("square-k4", {}).with_exposure_shares(shares);
+  EXPECT_EQ(parse_code_json(code_to_json(code)).exposure_shares(), shares);
+  nlohmann::json document = nlohmann::json::parse(code_to_json(code));
+  document["exposure_shares"] = {0.5, 0.5, 0.5, 0.5};
+  EXPECT_THAT(io_error_of([&] { parse_code_json(document.dump(), "c.json"); }),
+              HasSubstr("sum of exposure_shares = 2; must be 1"));
+}
+
+TEST(CodeJson, ProvenanceIsOptional) {
+  EXPECT_EQ(parse_code_json(without("", "provenance").dump()).provenance.method, "");
+  const CodeSet code = parse_code_json(without("/provenance", "residuals").dump());
+  EXPECT_EQ(code.provenance.method, "factorize");
+  EXPECT_TRUE(code.provenance.residuals.empty());
+}
+
+TEST(CodeJson, ReportsLineAndColumnWhereJsonEnds) {
+  EXPECT_THAT(io_error_of([] { parse_code_json("{\n  \"format\": ,\n}", "c.json"); }),
+              HasSubstr("c.json:2:13: "));
+  EXPECT_THAT(io_error_of([] { parse_code_json("", "c.json"); }), HasSubstr("c.json:1:1: "));
+}
+
+struct BadMember {
+  const char* pointer;
+  json value;
+  const char* message;
+};
+
+class CodeJsonRefuses : public testing::TestWithParam<BadMember> {};
+
+TEST_P(CodeJsonRefuses, WithPointerAndWhatWasExpected) {
+  EXPECT_EQ(refusal(changed(GetParam().pointer, GetParam().value)), GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Members, CodeJsonRefuses,
+    testing::Values(
+        BadMember{"/format", "other",
+                  "c.json: /format: found \"other\"; expected \"tofsmith-code\""},
+        BadMember{"/version", 2,
+                  "c.json: /version: found 2; expected 1: a newer tofsmith wrote this file"},
+        BadMember{"/samlpes", 4, "c.json: unknown member \"samlpes\"; did you mean \"samples\"?"},
+        BadMember{"/name", 3, "c.json: /name: found 3; expected a text"},
+        BadMember{"/samples", 4.0,
+                  "c.json: /samples: found 4.0; expected an integer in [2, 65536]"},
+        BadMember{"/samples", 1e9,
+                  "c.json: /samples: found 1000000000.0; expected an integer in [2, 65536]"},
+        BadMember{"/samples", 18446744073709551615ull,
+                  "c.json: /samples: found 18446744073709551615; expected an integer in [2, "
+                  "65536]"},
+        BadMember{"/taps", 0, "c.json: /taps: found 0; expected an integer in [1, 32]"},
+        BadMember{"/taps", 3,
+                  "c.json: /demodulation: found a list of 4; expected a list of 6: /exposures x "
+                  "/taps functions"},
+        BadMember{"/exposures", 3,
+                  "c.json: /modulation: found a list of 2; expected a list of 3: as specified by "
+                  "/exposures"},
+        BadMember{"/modulation", "none",
+                  "c.json: /modulation: found \"none\"; expected a list of 2: as specified by "
+                  "/exposures"},
+        BadMember{"/modulation/0", 3, "c.json: /modulation/0: found 3; expected an object"},
+        BadMember{"/modulation/0/kind", "square",
+                  "c.json: /modulation/0/kind: found \"square\"; expected \"binary\", "
+                  "\"sampled\" or \"cosines\""},
+        BadMember{"/modulation/0/levle", 1,
+                  "c.json: /modulation/0: unknown member \"levle\"; did you mean \"level\"?"},
+        BadMember{"/modulation/0/level", 0,
+                  "c.json: /modulation/0/level: found 0; expected a number > 0"},
+        BadMember{"/modulation/0/level", 3,
+                  "c.json: /modulation/0: modulation 0 mean = 1.16667; must be <= 1: modulation is "
+                  "power over average power"},
+        BadMember{"/modulation/0/on/1",
+                  {0.25, 0.4},
+                  "c.json: /modulation/0/on: on interval 0 = [0.1111111111111111, 0.3); switching "
+                  "times must be sorted: the next rise is at 0.25"},
+        BadMember{"/modulation/0/on/1",
+                  {0.9, 0.9},
+                  "c.json: /modulation/0/on: on interval 1 = [0.9, 0.9); must satisfy 0 <= rise < "
+                  "1 and rise < fall <= rise + 1"},
+        BadMember{"/modulation/0/on/1/0", nullptr,
+                  "c.json: /modulation/0/on/1/0: found null; expected a number"},
+        BadMember{"/modulation/0/on/1",
+                  {0.9},
+                  "c.json: /modulation/0/on/1: found a list of 1; expected a list of 2: [rise, "
+                  "fall]"},
+        BadMember{"/modulation/1/values/2", -0.5,
+                  "c.json: /modulation/1/values/2: found -0.5; expected a number >= 0"},
+        BadMember{"/modulation/1/values",
+                  {1, 1, 1},
+                  "c.json: /modulation/1/values: found a list of 3; expected a list of 4: as "
+                  "specified by /samples"},
+        BadMember{"/demodulation/0/level", 1.5,
+                  "c.json: /demodulation/0/level: found 1.5; expected a number in [0, 1]"},
+        BadMember{"/demodulation/2/values/3", 1.5,
+                  "c.json: /demodulation/2/values/3: found 1.5; expected a number in [0, 1]"},
+        BadMember{"/demodulation/3/values/2", 0.75,
+                  "c.json: sum over taps of exposure 1 = 1.25; must be <= 1: each electron is "
+                  "collected by one tap"},
+        BadMember{"/provenance/sede", 3,
+                  "c.json: /provenance: unknown member \"sede\"; did you mean \"seed\"?"},
+        BadMember{"/provenance/seed", -1,
+                  "c.json: /provenance/seed: found -1; expected an integer in [0, 2^64)"},
+        BadMember{"/provenance/residuals/1", "x",
+                  "c.json: /provenance/residuals/1: found \"x\"; expected a number"}));
+
+TEST(CodeJson, RejectsMissingMembers) {
+  EXPECT_EQ(refusal(without("", "samples")), "c.json: found no member \"samples\"; expected one");
+  EXPECT_EQ(refusal(without("", "format")), "c.json: found no member \"format\"; expected one");
+  EXPECT_EQ(refusal(without("/demodulation/2", "values")),
+            "c.json: /demodulation/2: found no member \"values\"; expected one");
+  EXPECT_EQ(refusal(json(3)), "c.json: found 3; expected an object");
+}
+
+TEST(CodeJson, RejectsInvalidNumbers) {
+  std::string text = code_to_json(awkward_code());
+  for (const char* number : {"NaN", "Infinity", "1e999"}) {
+    std::string broken = text;
+    const std::string level = "\"level\": 2.0";
+    ASSERT_NE(broken.find(level), std::string::npos);
+    broken.replace(broken.find(level), level.size(), std::string("\"level\": ") + number);
+    EXPECT_THAT(io_error_of([&] { parse_code_json(broken, "c.json"); }), HasSubstr("c.json"));
+  }
+}
+
+TEST(CodeJson, RejectsWritingInvalidCodes) {
+  CodeSet code = awkward_code();
+  code.provenance.depth_error_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(code_to_json(code), std::invalid_argument);
+  EXPECT_THROW(code_to_json(awkward_code().renamed("\xff")), std::invalid_argument);
+}
+
+TEST(CodeJson, RejectsEveryTruncation) {
+  std::string text = code_to_json(awkward_code());
+  text.pop_back();  // every prefix of the text without the final line end is incomplete
+  const auto parse = [](std::span<const std::byte> bytes) {
+    parse_code_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "c.json");
+  };
+  expect_truncations_refused(bytes_of(text), parse);
+}
+
 }  // namespace
+
 }  // namespace tofsmith

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/text/field_reader.hpp"
-#include "io/text/field_writer.hpp"
+#include "io/text/field_toml.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -23,7 +23,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 Camera camera() {
-  Camera camera = small_camera("paper-5f0");
+  Camera camera = coarse_camera("paper-5f0");
   camera.sensor.impulse_response = {.kind = ImpulseResponse::Kind::file,
                                     .samples = {0.25, 0.5, 0.25},
                                     .time_step_s = 1e-9,
@@ -107,7 +107,7 @@ TEST(DesignDirectory, ReadingUndoesWriting) {
 }
 
 TEST(DesignDirectory, KeepsMultipathErrors) {
-  Camera two_buckets = small_camera("paper-10f0", DepthErrorKind::circular);
+  Camera two_buckets = coarse_camera("paper-10f0", DepthErrorKind::circular);
   two_buckets.sensor.taps = 2;
   two_buckets.operating.multipath.emplace();
   DesignOptions options = small_options();
@@ -136,7 +136,7 @@ TEST(DesignDirectory, KeepsMultipathErrors) {
 }
 
 TEST(DesignDirectory, KeepsTheOrderOfExposures) {
-  Camera moving = small_camera("paper-10f0");
+  Camera moving = coarse_camera("paper-10f0");
   moving.operating.velocity_m_per_s = 1.0;
   const DesignOptions options = small_options();
   const DesignResult result =
@@ -153,7 +153,7 @@ TEST(DesignDirectory, KeepsTheOrderOfExposures) {
 }
 
 TEST(DesignDirectory, KeepsErrorsWithOtherCameras) {
-  Camera lit = small_camera("paper-10f0");
+  Camera lit = coarse_camera("paper-10f0");
   lit.operating.interference.emplace();
   for (const bool uniform_albedo : {false, true}) {
     lit.operating.uniform_albedo = uniform_albedo;

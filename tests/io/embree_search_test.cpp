@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/shared/random.hpp"
-#include "generated_meshes.hpp"
+#include "generated_shapes.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 

@@ -5,14 +5,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numbers>
+#include <set>
 
+#include "core/shared/random.hpp"
 #include "damaged_files.hpp"
+#include "io/meshes/polygon_soup.hpp"
+#include "sanitizers.hpp"
 #include "temporary_directory.hpp"
+#include "tofsmith/io/point_cloud.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 using testing::HasSubstr;
@@ -297,5 +306,110 @@ TEST(MeshFile, EveryPrefixOfATextIsReadOrRejected) {
     }
 }
 
+using Corners = std::vector<std::array<float, 3>>;
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+Triangles cut(const Corners& corners) {
+  Triangles triangles;
+  cut_into_triangles(corners, triangles);
+  return triangles;
+}
+
+Eigen::Vector3d at(const Corners& corners, std::size_t i) {
+  const auto& p = corners[i % corners.size()];
+  return {p[0], p[1], p[2]};
+}
+
+/// Twice the area, as a vector along the normal.
+Eigen::Vector3d area_of(const Corners& corners) {
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) area += at(corners, i).cross(at(corners, i + 1));
+  return area;
+}
+
+/// The star has concave corners and a random orientation.
+Corners star(RandomStream& random, int count) {
+  const Eigen::Quaterniond turned(
+      Eigen::Vector4d(random.normal(), random.normal(), random.normal(), random.normal())
+          .normalized());
+  Corners corners;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count, radius = 0.2 + random.uniform();
+    const Eigen::Vector3d p =
+        turned * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+    corners.push_back(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  }
+  return corners;
+}
+
+TEST(PolygonCutter, TrianglesCoverThePolygonOnceWithItsOrientation) {
+  RandomStream random(5, 1);
+  for (int round = 0; round < 300; ++round) {
+    const Corners corners = star(random, 3 + round % 40);
+    const Eigen::Vector3d whole = area_of(corners), normal = whole.normalized();
+    const Triangles triangles = cut(corners);
+    ASSERT_EQ(triangles.size(), corners.size() - 2);
+    double sum = 0.0;
+    for (const auto& [a, b, c] : triangles) {
+      const double area =
+          normal.dot((at(corners, b) - at(corners, a)).cross(at(corners, c) - at(corners, a)));
+      EXPECT_GE(area, -1e-6) << round;  // no triangle is flipped, so none overlaps another
+      sum += area;
+    }
+    EXPECT_NEAR(sum, whole.norm(), 1e-5) << round;
+  }
+}
+
+TEST(PolygonCutter, AFlatOrCrossedPolygonIsTriangulated) {
+  EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).size(), 2u);
+  EXPECT_EQ(cut({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}).size(), 3u);
+  EXPECT_EQ(cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u);
+}
+
+TEST(PolygonCutter, EveryCornerOfALongPolygonIsInATriangle) {
+  RandomStream random(6, 1);
+  const Corners corners = star(random, repetitions(100'000));
+  std::set<std::uint32_t> used;
+  for (const auto& triangle : cut(corners)) used.insert(triangle.begin(), triangle.end());
+  EXPECT_EQ(used.size(), corners.size());
+}
+
+PointCloud test_cloud() {
+  PointCloud cloud;
+  cloud.points_m = {{1.0f, 2.0f, 3.0f}, {-1.5f, 0.0f, 1e-3f}};
+  cloud.scalars = {{"intensity", {0.25f, 4.0f}}, {"confidence", {1.0f, 0.5f}}};
+  cloud.colours = {{0, 128, 255}, {1, 2, 3}};
+  return cloud;
+}
+
+TEST(PointCloud, TheFileFollowsTheFormat) {
+  PointCloud cloud;
+  cloud.points_m = {{1.0f, -2.0f, 0.0f}};
+  cloud.scalars = {{"intensity", {0.5f}}};
+  cloud.colours = {{1, 2, 255}};
+  EXPECT_EQ(serialize_ply(cloud),
+            bytes_of(std::string("ply\nformat binary_little_endian 1.0\nelement vertex 1\n"
+                                 "property float x\nproperty float y\nproperty float z\n"
+                                 "property float intensity\nproperty uchar red\n"
+                                 "property uchar green\nproperty uchar blue\nend_header\n") +
+                     std::string("\0\0\x80\x3f\0\0\0\xc0\0\0\0\0\0\0\0\x3f\1\2\xff", 19)));
+}
+
+TEST(PointCloud, RejectsWritingInvalidClouds) {
+  PointCloud cloud = test_cloud();
+  cloud.colours.pop_back();
+  EXPECT_THROW(serialize_ply(cloud), std::invalid_argument);
+  for (const char* name : {"x", "red", "confidence", "two words", ""}) {
+    cloud = test_cloud();
+    cloud.scalars[0].name = name;
+    EXPECT_THROW(serialize_ply(cloud), std::invalid_argument) << name;
+  }
+  cloud = test_cloud();
+  cloud.scalars[1].values.push_back(1.0f);
+  EXPECT_THROW(serialize_ply(cloud), std::invalid_argument);
+}
+
 }  // namespace
+
 }  // namespace tofsmith

@@ -33,7 +33,7 @@ const Keys point_keys{"signal_e_per_s",       "ambient_e_per_s",       "linear_m
                       "receiver_bound_mae_m", "direct_tof_bound_mae_m"};
 
 TEST(EvaluationDocument, HasExactlyTheSpecifiedKeys) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const EvaluateOptions options{.trials = 1000, .seed = 18446744073709551615ull};
   std::vector<EvaluatedCode> codes{
       {evaluate(build_family("sinusoid-k4", camera), camera, options), 7}};
@@ -66,7 +66,7 @@ TEST(EvaluationDocument, HasExactlyTheSpecifiedKeys) {
 }
 
 TEST(EvaluationDocument, MissingBoundsAreNull) {
-  Camera camera = small_camera("paper-5f0");
+  Camera camera = coarse_camera("paper-5f0");
   camera.light.impulse_response = camera.sensor.impulse_response = ImpulseResponse();
   const EvaluateOptions options{.trials = 1000};
   const EvaluatedCode code{evaluate(build_family("sinusoid-k4", camera), camera, options)};
@@ -81,13 +81,13 @@ TEST(EvaluationDocument, MissingBoundsAreNull) {
 TEST(EvaluationDocument, NamesTheDecoder) {
   const EvaluateOptions options{.method = DecodeMethod::unwrap,
                                 .unwrap_weights = UnwrapWeights::frequency};
-  const json document = json::parse(evaluation_document(small_camera("paper-5f0"), {}, options));
+  const json document = json::parse(evaluation_document(coarse_camera("paper-5f0"), {}, options));
   EXPECT_EQ(document["method"], "unwrap");
   EXPECT_EQ(document["unwrap_weights"], "frequency");
 }
 
 TEST(EvaluationDocument, ComparesMaximumLikelihoodWithZnccOnTheSameTrials) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera);
   EvaluateOptions options{.trials = 1000, .method = DecodeMethod::ml};
   EvaluatedCode evaluated{evaluate(code, camera, options)};
@@ -118,7 +118,7 @@ TEST(EvaluationDocument, ComparesMaximumLikelihoodWithZnccOnTheSameTrials) {
 }
 
 TEST(EvaluationDocument, IncludesRobustness) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera);
   EvaluatedCode evaluated{evaluate(code, camera, {.trials = 200})};
   evaluated.robustness = robustness(code, camera, {.trials = 200});
@@ -135,7 +135,7 @@ TEST(EvaluationDocument, IncludesRobustness) {
 }
 
 TEST(DesignDocument, AddsTheBestCodeAndComparisons) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const DesignOptions options = small_options();
   const DesignResult result = design(camera, options);
   const json document = json::parse(design_document(camera, result, options));

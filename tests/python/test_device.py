@@ -37,7 +37,7 @@ def test_a_device_gives_the_same_planes_as_the_cpu(decoders):
 
 
 def test_options_of_recordings_and_streams_reach_a_device(decoders, tmp_path):
-    """See tests/gpu/device_pipeline_test.cpp for other combinations."""
+    """See tests/gpu/device_test.cpp for other combinations."""
     raw = np.concatenate([raw_frames(), raw_frames()]).astype("<u2")
     np.save(tmp_path / "raw.npy", raw)
     (tmp_path / "s.raw.toml").write_text("width = 40\nheight = 30\nmeasurements = 4\nbits = 16\n"

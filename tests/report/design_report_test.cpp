@@ -63,7 +63,7 @@ DesignResult design_with_odd_names(const Camera& camera) {
 }
 
 TEST(DesignReport, ShowsADesignWithItsSceneForAnyNames) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const DesignResult result = design_with_odd_names(camera);
   std::vector<CodeSet> codes;
   for (const Candidate& c : result.candidates) codes.push_back(c.code);
@@ -78,7 +78,7 @@ TEST(DesignReport, ShowsADesignWithItsSceneForAnyNames) {
 }
 
 TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsOtherSections) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const DesignResult result = design(camera, small_options());
   const Page page = design_report(camera, result, std::nullopt, "", {"camera.toml", "raw.npy"});
   const Section& front = page.sections.front();
@@ -100,7 +100,7 @@ TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsOtherSections) {
 }
 
 TEST(DesignReport, ShowsEachCurveOnceAndOmitsShortOnes) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   DesignResult result = design(camera, small_options());
   for (std::size_t i = 0; i < result.candidates.size(); ++i)
     if (result.candidates[i].is_designed()) result.best = i;
@@ -126,18 +126,18 @@ TEST(DesignReport, ShowsEachCurveOnceAndOmitsShortOnes) {
 }
 
 TEST(DesignReport, ShowsCamerasOfManyKinds) {
-  Camera two_bucket = small_camera("paper-10f0", DepthErrorKind::circular);
+  Camera two_bucket = coarse_camera("paper-10f0", DepthErrorKind::circular);
   two_bucket.sensor.taps = 2;
-  Camera one_point = small_camera("paper-30x");
+  Camera one_point = coarse_camera("paper-30x");
   one_point.operating.signal_e_per_s = {1e4};
-  Camera analog = small_camera("paper-5f0");
+  Camera analog = coarse_camera("paper-5f0");
   analog.light.binary = analog.sensor.binary = false;
   for (const Camera& camera : {two_bucket, one_point, analog})
     expect_sound(design_report(camera, design(camera, small_options()), std::nullopt, ""), 4);
 }
 
 TEST(DesignReport, ShowsMultipathErrorsEvenIfNoCodeSeparatesTwoReturns) {
-  Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  Camera camera = coarse_camera("paper-5f0", DepthErrorKind::circular);
   camera.operating.multipath = OperatingMultipath{{0.25, 0.5}, {1.0, 2.0}};
   const Page page = design_report(camera, design(camera, small_options()), std::nullopt, "");
   expect_sound(page, 4);
@@ -148,7 +148,7 @@ TEST(DesignReport, ShowsMultipathErrorsEvenIfNoCodeSeparatesTwoReturns) {
 }
 
 TEST(DesignReport, ContainsTheWholeExplanation) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   DesignResult result = design(camera, small_options());
   result.explanation.push_back("The first further remark.");
   result.explanation.push_back("The second further remark.");
@@ -158,7 +158,7 @@ TEST(DesignReport, ContainsTheWholeExplanation) {
 }
 
 TEST(DesignReport, SupportsInfiniteBounds) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   DesignResult result = design(camera, small_options());
   for (Candidate& c : result.candidates)
     for (PointDepthError& p : c.error.points)
@@ -170,7 +170,7 @@ TEST(DesignReport, SupportsInfiniteBounds) {
 TEST(DesignReport, ShiftsTheTargetOfARotatedCode) {
   // The difference between the drawn correlation function and target must equal the reported
   // residual.
-  const Camera camera = small_camera("paper-30x");
+  const Camera camera = coarse_camera("paper-30x");
   DesignResult result = design(camera, small_options());
   for (Candidate& c : result.candidates) {
     if (c.method != "factorize") continue;
@@ -197,7 +197,7 @@ TEST(DesignReport, ShiftsTheTargetOfARotatedCode) {
 }
 
 TEST(EvaluationReport, ShowsCodesOfEqualNames) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera).renamed(odd_name);
   const DepthErrorReport error = evaluate(code, camera, {.trials = 1000});
   const std::vector<EvaluatedCode> evaluated(2, {error, 0, {}, {}});
@@ -205,7 +205,7 @@ TEST(EvaluationReport, ShowsCodesOfEqualNames) {
 }
 
 TEST(EvaluationReport, DrawsTheDistributionOfDepthsUnlessUniform) {
-  Camera camera = small_camera("paper-5f0");
+  Camera camera = coarse_camera("paper-5f0");
   const CodeSet code = build_family("sinusoid-k4", camera);
   const auto html_of = [&] {
     const std::vector<EvaluatedCode> evaluated{
@@ -225,7 +225,7 @@ TEST(EvaluationReport, DrawsTheDistributionOfDepthsUnlessUniform) {
 }
 
 TEST(SceneSection, WithoutCapturesShowsTheScene) {
-  const Camera camera = small_camera("paper-5f0");
+  const Camera camera = coarse_camera("paper-5f0");
   SceneResult scene = small_scene(camera, {});
   for (const bool captured : {true, false}) {
     if (!captured) scene.captures.clear();

@@ -4,15 +4,21 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "core/shared/random.hpp"
+#include "generated_shapes.hpp"
 #include "table_top_image.hpp"
+#include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 using Pattern = Texture::Pattern;
@@ -190,5 +196,153 @@ TEST(TableTop, ShowsEveryShape) {
   }
 }
 
+TEST(RayCaster, TestsEveryTriangleOfAMeshByDefault) {
+  const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
+                                     placed_mesh(tessellated_sphere(1), {0, 0, 2}, 1.0)};
+  const RayCaster caster(shapes);
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Ray ray = ray_about_origin(i);
+    const auto hit = caster.nearest(ray), expected = nearest_hit(shapes, ray);
+    ASSERT_EQ(hit.has_value(), expected.has_value()) << i;
+    if (hit) {
+      EXPECT_EQ(hit->distance_m, expected->distance_m) << i;
+    }
+  }
+}
+
+struct NearSearch final : MeshSearch {
+  void trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
+             std::int32_t shape) const override {
+    for (std::size_t lane = 0; lane < rays.size(); ++lane)
+      nearest[lane] = {{1.0, -rays[lane].direction, 0.5}, shape};
+  }
+};
+
+TEST(RayCaster, UsesTheGivenMeshSearch) {
+  const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
+                                     placed_mesh(unit_cube(), {0, 0, 900}, 1.0)};
+  const auto searched = [](const Mesh& mesh) -> std::unique_ptr<const MeshSearch> {
+    EXPECT_EQ(mesh.triangles.triangles.size(), unit_cube().triangles.size());
+    return std::make_unique<NearSearch>();
+  };
+  const SeenScene seen = RayCaster(shapes, searched).see(PinholeView::centred(9, 7, 1.0));
+  EXPECT_EQ(seen.shape.pixels, std::vector<std::int32_t>(9 * 7, 1));
+  EXPECT_EQ(seen.image.depth_m(3, 3), 1.0f);
+}
+
+TEST(RayCaster, ReportsTheVisibleShape) {
+  const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
+                                     placed_mesh(unit_cube(), {0, 0, 3}, 0.5),
+                                     Sphere{.centre = {0.6, 0, 3}, .radius_m = 0.2}};
+  const PinholeView view = PinholeView::centred(61, 41, 1.0);
+  const SeenScene seen = RayCaster(shapes).see(view);
+  EXPECT_EQ(seen.shape(0, 0), 0);
+  EXPECT_EQ(seen.shape(20, 30), 1);
+  std::vector<int> counts(3);
+  for (int row = 0; row < view.height; ++row)
+    for (int column = 0; column < view.width; ++column) {
+      const std::int32_t shape = seen.shape(row, column);
+      ASSERT_GE(shape, 0);
+      ++counts[static_cast<std::size_t>(shape)];
+      const auto alone = nearest_hit(std::span(&shapes[static_cast<std::size_t>(shape)], 1),
+                                     {{0, 0, 0}, view.ray(row, column)});
+      ASSERT_TRUE(alone);
+      EXPECT_FLOAT_EQ(seen.image.depth_m(row, column), static_cast<float>(alone->distance_m));
+    }
+  EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 20);
+}
+
+TEST(RayCaster, RejectsInvalidShapesAndPoses) {
+  Mesh broken = placed_mesh(unit_cube(), {0, 0, 2}, 1.0);
+  broken.triangles.vertices[0].x() = NAN;
+  EXPECT_THROW(RayCaster(std::vector<Shape>{broken}), std::invalid_argument);
+  const RayCaster nothing(std::vector<Shape>{});
+  EXPECT_FALSE(nothing.nearest(ray_about_origin(1)));
+  const PinholeView view = PinholeView::centred(8, 8, 1.0);
+  EXPECT_EQ(nothing.see(view).shape.pixels, std::vector<std::int32_t>(64, -1));
+  Eigen::Isometry3d stretched = Eigen::Isometry3d::Identity();
+  stretched.linear() *= 1.1;
+  EXPECT_THROW(nothing.see(view, stretched), std::invalid_argument);
+  EXPECT_THROW(nothing.see(PinholeView{}), std::invalid_argument);
+}
+
+TEST(RayCaster, APlaneBeyondTheRangeOfFloatsReturnsNothing) {
+  const std::vector<Shape> shapes = {Plane{.point = {0, 0, 1e60}}};
+  const SeenScene seen = RayCaster(shapes).see(PinholeView::centred(4, 4, 1.0));
+  seen.image.validate();
+  EXPECT_EQ(seen.shape.pixels, std::vector<std::int32_t>(16, -1));
+}
+
+Ray random_ray_nearby(std::uint64_t item) {
+  RandomStream random(17, item);
+  const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
+  const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
+  return {1.5 * origin, direction.normalized()};
+}
+
+const Capsule oblique{.start = {0.4, -0.9, 0.2}, .end = {-0.5, 1.1, 0.8}, .radius_m = 0.7};
+
+double distance_to_segment(const Capsule& capsule, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d span = capsule.end - capsule.start;
+  const double share = std::clamp(span.dot(point - capsule.start) / span.squaredNorm(), 0.0, 1.0);
+  return (point - capsule.start - share * span).norm();
+}
+
+TEST(Capsule, HitsAreOneRadiusFromTheSegmentAndNearest) {
+  int outside_hits = 0, inside_hits = 0;
+  for (std::uint64_t i = 0; i < 1500; ++i) {
+    const Ray ray = random_ray_nearby(i);
+    const auto hit = intersect(oblique, ray);
+    const bool inside = distance_to_segment(oblique, ray.origin) < oblique.radius_m;
+    // The signed distance to the surface changes sign at a hit: search in small steps.
+    const double end_m = hit ? hit->distance_m : 12.0;
+    for (double t = 0.0; t < end_m - 1e-6; t += 0.02)
+      ASSERT_EQ(distance_to_segment(oblique, ray.origin + t * ray.direction) < oblique.radius_m,
+                inside)
+          << "ray " << i << " crosses the surface at " << t << ", before its hit";
+    if (!hit) continue;
+    ++(inside ? inside_hits : outside_hits);
+    const Eigen::Vector3d at = ray.origin + hit->distance_m * ray.direction;
+    EXPECT_NEAR(distance_to_segment(oblique, at), oblique.radius_m, 1e-12);
+    EXPECT_NEAR(hit->normal.norm(), 1.0, 1e-12);
+    EXPECT_EQ(hit->normal.dot(ray.direction) < 0.0, !inside);
+  }
+  EXPECT_GT(outside_hits, 50);
+  EXPECT_GT(inside_hits, 5);
+}
+
+TEST(Capsule, OfZeroLengthIsASphere) {
+  const Capsule point{.start = {0.3, 0.1, -0.2}, .end = {0.3, 0.1, -0.2}, .radius_m = 1.2};
+  const Sphere sphere{.centre = point.start, .radius_m = point.radius_m};
+  int hits = 0;
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    const Ray ray = random_ray_nearby(i);
+    const auto one = intersect(point, ray);
+    const auto other = intersect(sphere, ray);
+    ASSERT_EQ(one.has_value(), other.has_value()) << i;
+    if (!one) continue;
+    ++hits;
+    EXPECT_NEAR(one->distance_m, other->distance_m, 1e-12);
+    EXPECT_NEAR((one->normal - other->normal).norm(), 0.0, 1e-12);
+  }
+  EXPECT_GT(hits, 30);
+}
+
+TEST(Capsule, DepthOnTheAxisIsTheNearEndMinusTheRadius) {
+  const Capsule pole{.start = {0, 0, 5}, .end = {0, 0, 3}, .radius_m = 0.5};
+  const auto along = intersect(pole, {{0, 0, 0}, {0, 0, 1}});
+  ASSERT_TRUE(along);
+  EXPECT_DOUBLE_EQ(along->distance_m, 2.5);
+  const auto across = intersect(pole, {{2, 0, 4}, {-1, 0, 0}});
+  ASSERT_TRUE(across);
+  EXPECT_DOUBLE_EQ(across->distance_m, 1.5);
+}
+
+TEST(Capsule, RejectsARadiusOfZero) {
+  EXPECT_THROW(validate(Capsule{.radius_m = 0.0}), std::invalid_argument);
+  EXPECT_THROW(validate(Capsule{.end = {0, NAN, 0}}), std::invalid_argument);
+}
+
 }  // namespace
+
 }  // namespace tofsmith

@@ -8,7 +8,7 @@
 #include <functional>
 #include <numbers>
 
-#include "simulate/lens_kernels.hpp"
+#include "simulate/lens_light.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/stray_light.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"

@@ -2,18 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "core/shared/random.hpp"
+#include "rows_setup.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/capture.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 using Weights = std::optional<std::vector<double>>;
@@ -243,4 +248,5 @@ TEST(WeighedDepths, MultipathMapsAreTheMeanOverThem) {
 }
 
 }  // namespace
+
 }  // namespace tofsmith

@@ -8,8 +8,12 @@
 #include <vector>
 
 #include "core/shared/random.hpp"
+#include "decode/search/direction_table.hpp"
+#include "generated_shapes.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/likelihood_decoder.hpp"
+#include "tofsmith/decode/unwrap_decoder.hpp"
 
 namespace tofsmith {
 
@@ -122,6 +126,27 @@ inline RawFrames frame_of(const std::vector<float>& raw, int measurements) {
   frames.measurements = measurements;
   frames.values = raw;
   return frames;
+}
+
+using LikelihoodSetup = DecoderSetup<LikelihoodDecoder, DecodeOptions>;
+
+using UnwrapSetup = DecoderSetup<UnwrapDecoder, UnwrapOptions>;
+
+inline DirectionTable directions_of(const Curve& curve) {
+  DecodingTable table;
+  table.correlation = curve;
+  table.ambient_gain = Eigen::VectorXd::Zero(curve.cols());
+  table.exposure_s = Eigen::VectorXd::Ones(curve.cols());
+  return DirectionTable(AmbientProjection(table));
+}
+
+/// The code has `code_samples` bins; ambient light is projected out.
+inline DirectionTable directions_of(const std::string& code, int code_samples, int samples) {
+  Camera camera = camera_with("paper-10f0");
+  camera.samples = code_samples;
+  const CodeSet set = build_family(code, camera).resampled(samples);
+  camera.samples = samples;
+  return DirectionTable(AmbientProjection(make_decoding_table(ForwardModel(set, camera), camera)));
 }
 
 }  // namespace tofsmith

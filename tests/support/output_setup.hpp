@@ -15,7 +15,6 @@
 #include "decode/output/lobe_posterior.hpp"
 #include "decode/output/pixel_model.hpp"
 #include "decode/output/pixel_output.hpp"
-#include "decode/output/residual_model.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode/search/direction_table.hpp"
 #include "decode_setup.hpp"

@@ -10,7 +10,8 @@
 
 namespace tofsmith {
 
-inline Camera small_camera(const std::string& name, DepthErrorKind error = DepthErrorKind::linear) {
+inline Camera coarse_camera(const std::string& name,
+                            DepthErrorKind error = DepthErrorKind::linear) {
   Camera camera = built_in_camera(name);
   camera.samples = 60;
   camera.operating.signal_e_per_s = {1e4, 1e5};

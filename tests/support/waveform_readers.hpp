@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "waveforms/siglent_waveform.hpp"
+#include "waveforms/siglent.hpp"
 
 namespace tofsmith {
 

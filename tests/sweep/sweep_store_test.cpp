@@ -9,8 +9,8 @@
 #include <iterator>
 
 #include "sweep/file_system.hpp"
-#include "sweep/item_result.hpp"
-#include "sweep/sqlite.hpp"
+#include "sweep/item_key.hpp"
+#include "sweep/store_file.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -13,10 +13,10 @@
 #include "pattern_reader.hpp"
 #include "tofsmith/io/number_table.hpp"
 #include "waveform_readers.hpp"
-#include "waveforms/keysight_arb.hpp"
+#include "waveforms/keysight.hpp"
 #include "waveforms/pattern_memory.hpp"
-#include "waveforms/siglent_waveform.hpp"
-#include "waveforms/tektronix_waveform.hpp"
+#include "waveforms/siglent.hpp"
+#include "waveforms/tektronix.hpp"
 
 namespace tofsmith {
 namespace {

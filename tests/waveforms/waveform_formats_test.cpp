@@ -11,10 +11,10 @@
 #include "damaged_files.hpp"
 #include "io/shared/read_file.hpp"
 #include "waveform_readers.hpp"
-#include "waveforms/ieee488_block.hpp"
-#include "waveforms/keysight_arb.hpp"
-#include "waveforms/siglent_waveform.hpp"
-#include "waveforms/tektronix_waveform.hpp"
+#include "waveforms/generator_scripts.hpp"
+#include "waveforms/keysight.hpp"
+#include "waveforms/siglent.hpp"
+#include "waveforms/tektronix.hpp"
 
 namespace tofsmith {
 namespace {

@@ -11,7 +11,6 @@
 #include <new>
 #include <stdexcept>
 
-#include "camera_call.hpp"
 #include "code_call.hpp"
 #include "request.hpp"
 #include "tofsmith/code/families.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "reply.hpp"
+#include "request.hpp"
 #include "tofsmith/core/progress.hpp"
 
 namespace tofsmith::lab {

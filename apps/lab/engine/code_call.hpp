@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "reply.hpp"
+#include "request.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
 
 namespace tofsmith::lab {
+
+/// Returns {toml, fields, range_m, warnings}: the complete camera, and every key that applies to
+/// it.
+Answer camera_answer(const Camera& camera);
 
 /// Returns the waveforms, correlation functions and coding curve of a code on a camera.
 ///   - light, gates (tap values, N): actual waveforms before the impulse responses;

@@ -15,6 +15,26 @@ namespace tofsmith::lab {
 
 namespace {
 
+/// Converts JSON to text. Invalid UTF-8 (e.g. in names from files) is replaced; non-finite numbers
+/// become null.
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Reply Answer::reply() && {
+  return {text_of(Json{{"answer", std::move(json_)}}), std::move(arrays_)};
+}
+
+Reply error_reply(std::string_view message, std::string_view field) {
+  Json error = {{"message", message}};
+  if (!field.empty()) error["field"] = field;
+  return {text_of(Json{{"error", std::move(error)}}), {}};
+}
+
+namespace {
+
 constexpr std::size_t max_changes = 1000;
 
 /// Placeholder for codes without a file; the page saves them under this name.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "reply.hpp"
 #include "request.hpp"
 #include "tofsmith/core/progress.hpp"
 

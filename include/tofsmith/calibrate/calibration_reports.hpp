@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/report/page.hpp"
 
 namespace tofsmith {

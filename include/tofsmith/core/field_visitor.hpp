@@ -16,6 +16,8 @@
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
 
+namespace tofsmith {
+
 // Structs that users set by keys, such as the tables of a camera file, have a function that passes
 // their members to a visitor:
 //
@@ -26,7 +28,6 @@
 //
 // Visitors read and write documents, check ranges and list keys. Names, ranges and help texts are
 // defined only there. Units follow from the end of the name: unit_of_key().
-namespace tofsmith {
 
 /// Name, range and help text of a key.
 struct Key {
@@ -271,6 +272,23 @@ template <typename Struct>
 void check_ranges(Struct its, std::string prefix = "") {
   RangeCheck check(std::move(prefix));
   describe(check, its);
+}
+
+/// Collects notes on numbers outside Key::usually(), which suggest a wrong unit or power of ten.
+class UnusualNumbers : public PresentKeyVisitor {
+ public:
+  /// "exposure_s = 20 s; most cameras have 1e-05 to 1 s: is the unit right?"
+  std::vector<std::string> notes;
+
+ protected:
+  void visit(const Key& key, const Value& value) override;
+};
+
+template <typename Struct>
+std::vector<std::string> unusual_numbers(Struct its) {
+  UnusualNumbers visitor;
+  describe(visitor, its);
+  return std::move(visitor.notes);
 }
 
 }  // namespace tofsmith

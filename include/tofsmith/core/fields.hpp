@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +20,8 @@
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
 
+namespace tofsmith {
+
 // Fields of options and results are listed once, next to the struct, in the order of declaration:
 //
 //   auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
@@ -27,7 +31,6 @@
 //
 // Validation, keys of finished work, JSON, command line options, Python keyword arguments and
 // effort use for_each_field(), which does not compile if a field is missing.
-namespace tofsmith {
 
 /// Properties of a field besides its type.
 enum class FieldMark : unsigned {

@@ -9,7 +9,6 @@
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/depth_limits.hpp"
 #include "tofsmith/decode/filter.hpp"
-#include "tofsmith/decode/time_filter.hpp"
 
 namespace tofsmith {
 

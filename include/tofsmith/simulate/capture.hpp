@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/bounced_light.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
@@ -47,7 +50,7 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
 
 /// Simulates raw measurements of a scene, (F, H, W, K), in electrons, or counts if the sensor has
 /// an ADC. Depth beyond the unambiguous range wraps; pixels without a return receive only ambient
-/// light. A lens (Camera::blur) blurs image pixels; see also staged_capture.hpp.
+/// light. A lens (Camera::blur) blurs image pixels; see also capture_staged().
 /// @throws std::invalid_argument if the arguments are invalid or do not fit; Interrupted
 /// @note noise depends only on (seed, pixel, frame): same bits for any number of threads
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,

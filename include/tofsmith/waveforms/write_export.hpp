@@ -10,6 +10,7 @@
 
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/report/page.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 #include "tofsmith/waveforms/upload_script.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"

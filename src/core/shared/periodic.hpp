@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "tofsmith/core/image.hpp"
+
 namespace tofsmith {
 
 /// Real Fourier transform of a periodic signal of N samples,
@@ -37,5 +39,27 @@ double circular_total_variation(const Eigen::VectorXd& x);
 
 /// x[n - shift], modulo N.
 Eigen::VectorXd circular_shift(const Eigen::VectorXd& x, int shift);
+
+/// Convolution of images of one size; values outside are 0.
+class PaddedConvolution {
+ public:
+  /// @param kernel  (2 R + 1, 2 Q + 1), centred; parts beyond the image are ignored
+  PaddedConvolution(const Image<float>& kernel, int height, int width);
+
+  Image<float> apply(const Image<float>& image) const;
+  /// Additional memory [bytes].
+  static double bytes(const Image<float>& kernel, int height, int width);
+
+ private:
+  /// Row transforms: real and imaginary parts, (rows, columns / 2 + 1) each.
+  struct Halves {
+    Eigen::MatrixXd real, imaginary;
+  };
+  Halves of_rows(const Eigen::MatrixXd& padded, int rows) const;
+
+  int height_, width_;
+  PeriodicTransform along_row_, along_column_;
+  Eigen::MatrixXcd real_, imaginary_;  // column transforms of the kernel's halves
+};
 
 }  // namespace tofsmith

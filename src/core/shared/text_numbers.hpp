@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tofsmith {
 
@@ -27,6 +31,12 @@ constexpr char lower_case(char c) {
 std::string letters_and_digits(std::string_view text);
 constexpr char upper_case(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+/// "[1, 2.5]".
+template <typename Number>
+std::string list_text(const std::vector<Number>& values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
 }  // namespace tofsmith

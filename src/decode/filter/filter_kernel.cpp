@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "decode/filter/compared_rows.hpp"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/filter_kernel.cpp"
 #include <hwy/foreach_target.h>

@@ -9,7 +9,7 @@
 
 #include "core/shared/decompositions.hpp"
 #include "core/shared/pixel_runs.hpp"
-#include "decode/shared/saturation_level.hpp"
+#include "decode/shared/marked_raw.hpp"
 
 namespace tofsmith {
 

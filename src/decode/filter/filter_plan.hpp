@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "decode/filter/filter_planes.hpp"
-#include "decode/filter/hidden_signal.hpp"
 #include "decode/filter/lit_kernel.hpp"
 #include "decode/filter/slope_kernel.hpp"
 #include "decode/raw_scale.hpp"

@@ -6,12 +6,11 @@
 #include <array>
 #include <vector>
 
-#include "decode/filter/compared_rows.hpp"
+#include "decode/filter/filter_kernel.hpp"
 #include "decode/filter/filter_planes.hpp"
-#include "decode/filter/hidden_signal.hpp"
-#include "decode/shared/saturation_level.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/decode/time_filter.hpp"
+#include "tofsmith/decode/filter.hpp"
 
 namespace tofsmith {
 

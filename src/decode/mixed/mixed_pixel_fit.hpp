@@ -6,7 +6,6 @@
 #include <array>
 
 #include "decode/ambient_projection.hpp"
-#include "decode/expected_noise.hpp"
 
 namespace tofsmith {
 

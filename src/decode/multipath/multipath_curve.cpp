@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/shared/exponential_average.hpp"
+#include "core/shared/special_functions.hpp"
 
 namespace tofsmith {
 

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include "decode/expected_noise.hpp"
+#include "decode/ambient_projection.hpp"
 #include "decode/multipath/multipath_search.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith {
@@ -89,5 +91,9 @@ class MultipathEngine {
   double consistent_chi2_ = std::numeric_limits<double>::infinity();  // upper limit for both
   std::optional<ReturnPosterior> posterior_;
 };
+
+/// Checks that there are enough independent means for the unknowns (5; for a tail of known delay 4)
+/// and one more to test the fit. Returns an error with a remedy; none if they suffice.
+std::optional<BrokenRule> missing_support(const AmbientProjection& projection, MultipathKind later);
 
 }  // namespace tofsmith

@@ -8,9 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "decode/expected_noise.hpp"
-#include "decode/output/lobe_chords.hpp"
-#include "decode/output/noise_metric.hpp"
+#include "decode/ambient_projection.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/output/lobe_posterior.cpp"

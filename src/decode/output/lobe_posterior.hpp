@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -11,7 +12,61 @@
 
 namespace tofsmith {
 
-class NoiseMetric;
+/// Scalar products in the decoding subspace, <u, w>_C = u^T C^-1 w, with the covariance C = V^T
+/// diag(v) V of q. Allocates nothing.
+class NoiseMetric {
+ public:
+  static constexpr std::size_t max_pairs =
+      static_cast<std::size_t>(max_measurements) * (max_measurements + 1) / 2;
+
+  /// @param noise_basis  V (K, rank)
+  /// @param plane        q (rank)
+  /// @param variance_e2  v (K)
+  NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane, const double* variance_e2);
+
+  /// Lower triangle, row by row.
+  const double* metric() const { return metric_.data(); }
+  /// C^-1 q (rank).
+  const double* along() const { return along_.data(); }
+  /// |q|_C.
+  double length() const { return length_; }
+  /// Returns an upper bound on the factor by which small angles grow; infinite if the noise is too
+  /// uneven.
+  double stretch() const;
+
+  double product(const double* u, const double* w) const;
+  /// <q, u>_C.
+  double signal(const double* u) const;
+
+ private:
+  int rank_;
+  std::array<double, max_pairs> metric_;
+  std::array<double, max_measurements> along_;
+  double length_ = 0.0;
+};
+
+/// Posterior probability of positions on the chords between bins, inside and outside a main lobe.
+/// On a chord the signal in standard deviations is c = rho cos(theta - theta_0); for strong signals
+/// the density exp(c^2 / 2) sqrt(2 pi) / c is nearly a Gaussian of standard deviation 1 / rho.
+class ChordMass {
+ public:
+  /// Adds a chord of one bin, unless its probability is below exp(-40) of the total.
+  /// @param from, to  c at both ends
+  /// @param cosine    of the angle between both ends
+  void add_chord(double from, double to, double cosine, bool is_inside);
+  /// Adds half a bin at each of two unconnected bins.
+  void add_ends(double from, double to, bool is_inside);
+
+  double share_inside() const;
+
+ private:
+  /// Adds factor exp(c^2 / 2).
+  void add(double c, double factor, bool is_inside);
+
+  double peak_ = 0.0;  // reference c^2 / 2 of all sums
+  double inside_ = 0.0;
+  double outside_ = 0.0;
+};
 
 /// Maximum half width of the main lobe as a share of the range.
 inline constexpr double max_lobe_share = 0.05;

@@ -1,17 +1,153 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include "decode/output/lobe_posterior.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/shared/whole_vectors.hpp"
-#include "decode/output/lobe_posterior.hpp"
 #include "decode/search/chord_matcher.hpp"
 #include "decode/search/smooth_curve.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
+
+NoiseMetric::NoiseMetric(const RowMajorMatrix& noise_basis, const double* plane,
+                         const double* variance_e2)
+    : rank_(static_cast<int>(noise_basis.cols())) {
+  // Smaller relative variances are rounding errors of noiseless directions.
+  constexpr double least_share = 1e-12;
+  std::array<double, max_pairs> factor;
+  const auto at = [](int i, int j) { return static_cast<std::size_t>(i * (i + 1) / 2 + j); };
+  for (int i = 0; i < rank_; ++i)
+    for (int j = 0; j <= i; ++j) factor[at(i, j)] = 0.0;
+  for (int k = 0; k < static_cast<int>(noise_basis.rows()); ++k) {
+    const double* const row = noise_basis.row(k).data();
+    for (int i = 0; i < rank_; ++i) {
+      const double by = variance_e2[k] * row[i];
+      for (int j = 0; j <= i; ++j) factor[at(i, j)] += by * row[j];
+    }
+  }
+  // C = L L^T; the diagonal stores inverses.
+  for (int j = 0; j < rank_; ++j) {
+    double left = factor[at(j, j)];
+    const double floor = least_share * left;
+    for (int k = 0; k < j; ++k) left -= factor[at(j, k)] * factor[at(j, k)];
+    const double inverse = factor[at(j, j)] = 1.0 / std::sqrt(std::max(left, floor));
+    for (int i = j + 1; i < rank_; ++i) {
+      double value = factor[at(i, j)];
+      for (int k = 0; k < j; ++k) value -= factor[at(i, k)] * factor[at(j, k)];
+      factor[at(i, j)] = value * inverse;
+    }
+  }
+  // L^-1 in place
+  for (int j = 0; j < rank_; ++j)
+    for (int i = j + 1; i < rank_; ++i) {
+      double value = factor[at(i, j)] * factor[at(j, j)];
+      for (int k = j + 1; k < i; ++k) value += factor[at(i, k)] * factor[at(k, j)];
+      factor[at(i, j)] = -value * factor[at(i, i)];
+    }
+  for (int i = 0; i < rank_; ++i) {
+    along_[static_cast<std::size_t>(i)] = 0.0;
+    for (int j = 0; j <= i; ++j) {
+      double value = 0.0;
+      for (int k = i; k < rank_; ++k) value += factor[at(k, i)] * factor[at(k, j)];
+      metric_[at(i, j)] = value;
+    }
+  }
+  double square = 0.0;
+  for (int i = 0; i < rank_; ++i) {
+    double white = 0.0;
+    for (int j = 0; j <= i; ++j) white += factor[at(i, j)] * plane[j];
+    square += white * white;
+    for (int j = 0; j <= i; ++j) along_[static_cast<std::size_t>(j)] += factor[at(i, j)] * white;
+  }
+  length_ = std::sqrt(square);
+}
+
+/// Eigenvalues differ from the mean by at most sqrt(rank - 1) standard deviations.
+double NoiseMetric::stretch() const {
+  double trace = 0.0, squares = 0.0;
+  for (int i = 0, at = 0; i < rank_; ++i)
+    for (int j = 0; j <= i; ++j, ++at) {
+      const double value = metric_[static_cast<std::size_t>(at)];
+      if (i == j) trace += value;
+      squares += (i == j ? 1.0 : 2.0) * value * value;
+    }
+  const double mean = trace / rank_;
+  const double reach = std::sqrt((rank_ - 1) * std::max(0.0, squares / rank_ - mean * mean));
+  return mean > reach ? std::sqrt((mean + reach) / (mean - reach))
+                      : std::numeric_limits<double>::infinity();
+}
+
+double NoiseMetric::product(const double* u, const double* w) const {
+  double sum = 0.0;
+  for (int i = 0, at = 0; i < rank_; ++i)
+    for (int j = 0; j <= i; ++j, ++at)
+      sum += metric_[static_cast<std::size_t>(at)] *
+             (i == j ? u[i] * w[i] : u[i] * w[j] + u[j] * w[i]);
+  return sum;
+}
+
+double NoiseMetric::signal(const double* u) const {
+  double sum = 0.0;
+  for (int i = 0; i < rank_; ++i) sum += along_[static_cast<std::size_t>(i)] * u[i];
+  return sum;
+}
+
+namespace {
+
+constexpr double negligible = 40.0;
+const double sqrt_two_pi = std::sqrt(2 * std::numbers::pi);
+
+/// Mills ratio of the normal distribution, to 10 %.
+double mills_ratio(double x) { return 2.0 / (x + std::sqrt(x * x + 8.0 / std::numbers::pi)); }
+
+}  // namespace
+
+void ChordMass::add(double c, double factor, bool is_inside) {
+  if (!(c > 0.0)) return;
+  const double square = 0.5 * c * c;
+  if (square > peak_) {
+    const double by = std::exp(peak_ - square);
+    inside_ *= by;
+    outside_ *= by;
+    peak_ = square;
+  }
+  (is_inside ? inside_ : outside_) += factor * sqrt_two_pi / c * std::exp(square - peak_);
+}
+
+void ChordMass::add_chord(double from, double to, double cosine, bool is_inside) {
+  const double sine2 = 1.0 - cosine * cosine;
+  if (!(sine2 > 1e-14)) return add(std::max(from, to), 1.0, is_inside);
+  // c(theta) = from cos(theta) + across sin(theta)
+  const double sine = std::sqrt(sine2), across = (to - from * cosine) / sine;
+  const bool is_within = across >= 0.0 && across * cosine <= from * sine;
+  const double rho = std::hypot(from, across);
+  const double largest = is_within ? rho : std::max(from, to);
+  if (!(largest > 0.0) || 0.5 * largest * largest < peak_ - negligible) return;
+  const double angle = std::atan2(sine, cosine), best = std::atan2(across, from);
+  const auto past_end = [&](double c, double by) {
+    add(c, std::min(1.0, mills_ratio(rho * std::sin(std::min(by, 1.5))) / (rho * angle)),
+        is_inside);
+  };
+  if (!is_within) return from > to ? past_end(from, -best) : past_end(to, best - angle);
+  const double both = std::erf(rho * best * std::numbers::sqrt2 / 2) +
+                      std::erf(rho * (angle - best) * std::numbers::sqrt2 / 2);
+  add(rho, 0.5 * both * sqrt_two_pi / (rho * angle), is_inside);
+}
+
+void ChordMass::add_ends(double from, double to, bool is_inside) {
+  add(from, 0.5, is_inside);
+  add(to, 0.5, is_inside);
+}
+
+double ChordMass::share_inside() const {
+  const double whole = inside_ + outside_;
+  return whole > 0.0 ? inside_ / whole : 1.0;
+}
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "decode/expected_noise.hpp"
+#include "decode/ambient_projection.hpp"
 #include "decode/search/shared/bin_records.hpp"
 
 namespace tofsmith {

@@ -7,7 +7,7 @@
 
 #include "decode/output/lobe_posterior.hpp"
 #include "decode/output/output_chunk.hpp"
-#include "decode/output/residual_model.hpp"
+#include "decode/output/pixel_model.hpp"
 #include "decode/search/shared/bin_records.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
 #include "tofsmith/decode/decoder.hpp"

@@ -8,7 +8,7 @@
 #define TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
 #endif
 
-#include "decode/expected_noise.hpp"
+#include "decode/ambient_projection.hpp"
 #include "decode/output/lobe_posterior.hpp"
 #include "decode/output/output_position-inl.hpp"
 #include "decode/output/shared/output_vectors-inl.hpp"

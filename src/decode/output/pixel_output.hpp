@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "decode/output/pixel_model.hpp"
-#include "decode/output/residual_model.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"

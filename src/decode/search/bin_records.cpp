@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/shared/whole_vectors.hpp"
-#include "decode/expected_noise.hpp"
+#include "decode/ambient_projection.hpp"
 #include "decode/search/direction_table.hpp"
 #include "decode/search/smooth_curve.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "decode/search/distinct_directions.hpp"
+#include "decode/search/direction_table.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
 
 namespace tofsmith {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "decode/shared/saturation_level.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/decode/frame_pipeline.hpp"
 
 namespace tofsmith {

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "code/shared/on_intervals.hpp"
+#include "design/baselines.hpp"
 #include "design/judge.hpp"
-#include "design/shortest_run.hpp"
-#include "design/suggested_exposures.hpp"
+#include "design/run_lengths.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

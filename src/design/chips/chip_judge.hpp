@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "design/chips/chip_light.hpp"
+#include "design/chips/chip_margin.hpp"
 #include "tofsmith/design/chip_search.hpp"
 
 namespace tofsmith {

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "design/designed_code.hpp"
 #include "design/judge.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "code/shared/ramp.hpp"
+#include "code/shared/on_intervals.hpp"
 #include "design/chips/chip_metric.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -9,6 +9,28 @@
 
 namespace tofsmith {
 
+struct OptimalityCertificate {
+  /// Violation of the dual conditions, in units of the total-variation weight.
+  double violation = 0;
+  /// Relative violation of a bound or of the budget.
+  double infeasibility = 0;
+  double budget_multiplier = 0;  ///< price of the budget
+
+  double worst() const { return violation > infeasibility ? violation : infeasibility; }
+};
+
+/// Computes the certificate of any x by constructing the dual path.
+///
+/// x is optimal if and only if there are a price nu >= 0 of the budget (0 if inactive) and a path
+/// u[n] between samples n and n + 1 with |u| <= w, u = w sign(jump) at every jump, and u[n] - u[n -
+/// 1] = g[n] + nu inside the bounds, <= at the lower and >= at the upper bound; g is the gradient
+/// of the least-squares term. The interval of admissible u[n] is propagated around the ring from a
+/// jump. An empty interval is shifted back; the shifts between two jumps add up to the violation of
+/// the piece, which is convex in nu and minimized by golden-section search. O(N log N).
+/// @param x  (N), finite; jumps below 1e-12 of the upper bound are ignored
+/// @throws std::invalid_argument if the problem is invalid or the length of x differs
+OptimalityCertificate certificate(const CirculantTvProblem& problem, const Eigen::VectorXd& x);
+
 struct CirculantTvAdmmOptions {
   int max_iterations = 20000;
   double tolerance = 1e-11;  ///< RMS of both residuals / upper bound, > 0

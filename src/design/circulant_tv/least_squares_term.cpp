@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/shared/periodic.hpp"
-#include "design/circulant_tv/box_budget_projection.hpp"
+#include "design/circulant_tv/proximal_operators.hpp"
 
 namespace tofsmith {
 

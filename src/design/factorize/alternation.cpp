@@ -2,13 +2,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/factorize/alternation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "code/shared/on_intervals.hpp"
 #include "core/shared/periodic.hpp"
+#include "core/shared/random.hpp"
 #include "design/circulant_tv/least_squares_term.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
+
+Eigen::VectorXd binary_demodulation(const Eigen::VectorXd& x, double threshold) {
+  return (x.array() > threshold).cast<double>();
+}
+
+Eigen::VectorXd binary_modulation(const Eigen::VectorXd& x, double threshold, double peak_factor) {
+  Eigen::VectorXd on = (x.array() > threshold * x.maxCoeff()).cast<double>();
+  const double duty = on.mean();
+  if (duty > 0.0) on *= std::min(peak_factor, 1.0 / duty);
+  return on;
+}
+
+BinaryProjection project_to_binary(const PairModel& model, const SampledPair& relaxed) {
+  constexpr int levels = 20;
+  BinaryProjection best{relaxed, 0.0};
+  if (model.binary_demodulation())
+    best.pair.demodulation = binary_demodulation(relaxed.demodulation, 0.5);
+  if (model.binary_modulation())
+    best.pair.modulation = binary_modulation(relaxed.modulation, 0.5, model.peak_factor());
+  Eigen::VectorXcd modulation = model.spectrum(best.pair.modulation);
+  Eigen::VectorXcd demodulation = model.spectrum(best.pair.demodulation);
+  best.residual_rms = model.residual_rms(modulation, demodulation);
+
+  const auto keep_better = [&](Eigen::VectorXd trial, Eigen::VectorXd& kept,
+                               Eigen::VectorXcd& spectrum) {
+    Eigen::VectorXcd other = model.spectrum(trial);
+    std::swap(spectrum, other);
+    const double residual = model.residual_rms(modulation, demodulation);
+    if (residual >= best.residual_rms) return std::swap(spectrum, other);
+    best.residual_rms = residual;
+    kept = std::move(trial);
+  };
+  for (int round = 0; round < 2; ++round) {
+    for (int level = 1; level < levels && model.binary_demodulation(); ++level)
+      keep_better(binary_demodulation(relaxed.demodulation, static_cast<double>(level) / levels),
+                  best.pair.demodulation, demodulation);
+    for (int level = 1; level < levels && model.binary_modulation(); ++level)
+      keep_better(binary_modulation(relaxed.modulation, static_cast<double>(level) / levels,
+                                    model.peak_factor()),
+                  best.pair.modulation, modulation);
+  }
+  return best;
+}
 
 namespace {
 
@@ -80,6 +130,76 @@ AlternationResult alternate(const PairModel& model, SampledPair start,
     last_objective = objective;
   }
   return result;
+}
+
+namespace {
+
+/// Equal pulses centred at zero; `spacing` and total duty in periods.
+Waveform centred_pulses(int count, double spacing, double duty) {
+  std::vector<OnInterval> on;
+  for (int i = 0; i < count; ++i) {
+    const double centre = (i - 0.5 * (count - 1)) * spacing;
+    const double rise = wrap(centre - 0.5 * duty / count, 1.0);
+    on.push_back({rise, rise + duty / count});
+  }
+  return Waveform::binary(within_period(std::move(on)), 1.0 / duty);
+}
+
+PairCandidate candidate(const PairModel& model, WaveformPair pair, std::string name) {
+  const double residual = model.residual_rms(pair);
+  return {std::move(pair), residual, std::move(name), 0};
+}
+
+}  // namespace
+
+AlternationStart random_start(const PairModel& model, std::uint64_t seed, int index) {
+  RandomStream random(seed, combine_keys(static_cast<std::uint64_t>(model.samples()), 0x57a7),
+                      static_cast<std::uint32_t>(index));
+  SampledPair pair{Eigen::VectorXd(model.samples()), Eigen::VectorXd(model.samples())};
+  for (double& value : pair.modulation) value = random.uniform();
+  for (double& value : pair.demodulation) value = random.uniform();
+  pair.modulation /= pair.modulation.mean();
+  pair.modulation = pair.modulation.cwiseMin(model.peak_factor());
+  return {fmt::format("random {}", index), std::move(pair)};
+}
+
+std::vector<PairCandidate> structured_starts(const PairModel& model) {
+  const Eigen::VectorXd& chi = model.target_samples();
+  const double middle = 0.5 * (chi.minCoeff() + chi.maxCoeff());
+  const Waveform d = Waveform::binary_from_samples(
+      (chi.array() - chi.minCoeff()).matrix(), 1.0,
+      (middle - chi.minCoeff()) / std::max(1e-300, chi.maxCoeff() - chi.minCoeff()));
+  const int pulses = static_cast<int>(d.on_intervals().size());
+  const double shortest = 1.0 / model.peak_factor();
+  std::vector<double> duties{shortest, std::max(0.5, shortest)};
+  if (const auto& ideal = model.target().ideal)
+    duties.push_back(std::max(shortest, ideal->modulation.duty()));
+  std::sort(duties.begin(), duties.end());
+  duties.erase(std::unique(duties.begin(), duties.end()), duties.end());
+
+  std::vector<PairCandidate> starts;
+  for (const double duty : duties)
+    for (int count = 1; count <= pulses + 1; ++count)
+      for (const int per_period : {pulses, pulses + 1}) {
+        if (count > per_period || duty * per_period / count > 0.95) continue;
+        if (count == 1 && per_period > 1 && per_period != pulses) continue;  // same pulse
+        const Waveform m = centred_pulses(count, 1.0 / per_period, duty);
+        starts.push_back(
+            candidate(model, {m, d},
+                      fmt::format("{} pulses 1/{} apart, duty {:.3g}", count, per_period, duty)));
+      }
+  return starts;
+}
+
+std::vector<PairCandidate> naive_start(const PairModel& model) {
+  const auto& ideal = model.target().ideal;
+  if (!ideal) return {};
+  if (model.binary_demodulation() && !ideal->demodulation.is_binary()) return {};
+  const bool playable = ideal->modulation.is_binary() || !model.binary_modulation();
+  if (playable && ideal->modulation.peak() <= model.peak_factor())
+    return {candidate(model, *ideal, "naive")};
+  const double duty = std::max(1.0 / model.peak_factor(), ideal->modulation.duty());
+  return {candidate(model, {rectangular_pulse(duty), ideal->demodulation}, "naive")};
 }
 
 }  // namespace tofsmith

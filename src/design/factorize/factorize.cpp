@@ -10,9 +10,7 @@
 #include "core/shared/shared_progress.hpp"
 #include "design/factorize/alternation.hpp"
 #include "design/factorize/edge_refinement.hpp"
-#include "design/factorize/point_settling.hpp"
-#include "design/factorize/start_pool.hpp"
-#include "design/shortest_run.hpp"
+#include "design/run_lengths.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 

@@ -11,9 +11,8 @@
 #include "code/shared/family_rules.hpp"
 #include "code/shared/hamiltonian.hpp"
 #include "design/chips/pair_choice.hpp"
-#include "design/designed_code.hpp"
+#include "design/factorize/alternation.hpp"
 #include "design/factorize/pair_model.hpp"
-#include "design/factorize/start_pool.hpp"
 #include "design/judge.hpp"
 #include "tofsmith/core/error.hpp"
 

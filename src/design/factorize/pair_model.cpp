@@ -7,7 +7,7 @@
 
 #include "camera/shared/actual_code.hpp"
 #include "design/grid_transfer.hpp"
-#include "design/shortest_run.hpp"
+#include "design/run_lengths.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 
 namespace tofsmith {

@@ -8,9 +8,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/shared/list_text.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "design/baselines.hpp"
-#include "design/designed_code.hpp"
 #include "design/exposure_shares.hpp"
 #include "design/frequencies/frequency_search.hpp"
 #include "design/judge.hpp"

@@ -2,24 +2,87 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/frequencies/square_error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "tofsmith/camera/forward_model.hpp"
 
 namespace tofsmith {
 
+int SquareCode::exposures() const {
+  int sum = 0;
+  for (const SquareTone& tone : tones) sum += tone.phases;
+  return sum;
+}
+
+int SquareCode::repetitions() const {
+  int common = 0;
+  for (const SquareTone& tone : tones) common = std::gcd(common, tone.frequency);
+  return common;
+}
+
+std::string SquareCode::name() const {
+  std::string name = "square";
+  for (const SquareTone& tone : tones) name += fmt::format("-{}x{}", tone.frequency, tone.phases);
+  return name;
+}
+
+std::vector<int> phases_in_steps(int phases, int phase_steps) {
+  const double spacing = phases == 2 ? 0.25 : 1.0 / phases;
+  std::vector<int> steps;
+  for (int i = 0; i < phases; ++i)
+    steps.push_back(static_cast<int>(std::lround(i * spacing * phase_steps)));
+  return steps;
+}
+
+double square_level(double duty, double peak_factor) { return std::min(1.0 / duty, peak_factor); }
+
 namespace {
 
-constexpr double pi = std::numbers::pi;
+Waveform square_light(const SquareTone& tone, double duty, double peak_factor) {
+  std::vector<OnInterval> on;
+  for (int i = 0; i < tone.frequency; ++i)
+    on.push_back({static_cast<double>(i) / tone.frequency, (i + duty) / tone.frequency});
+  return Waveform::binary(std::move(on), square_level(duty, peak_factor));
+}
+
+}  // namespace
+
+CodeSet to_code_set(const SquareCode& code, const Camera& camera) {
+  const int phase_steps = camera.light.square->phase_steps;
+  std::vector<Waveform> modulation, demodulation;
+  std::vector<double> shares;
+  for (const SquareTone& tone : code.tones) {
+    const Waveform light = square_light(tone, code.duty, camera.light.peak_factor);
+    for (const int step : phases_in_steps(tone.phases, phase_steps)) {
+      modulation.push_back(light);
+      demodulation.push_back(
+          square_wave(tone.frequency, static_cast<double>(step) / phase_steps / tone.frequency));
+      shares.push_back(tone.share / tone.phases);
+    }
+  }
+  const CodeSet one_tap = CodeSet::create(code.name(), camera.samples, 1, std::move(modulation),
+                                          std::move(demodulation))
+                              .with_exposure_shares(std::move(shares));
+  if (camera.sensor.is_signed()) return one_tap.with_signed_weights();
+  return camera.sensor.taps == 2 ? one_tap.with_two_buckets() : one_tap;
+}
+
+namespace {
+
 constexpr int phases_tabulated = 512;
 constexpr int points_per_period = 16;  ///< of the highest frequency
 constexpr int highest_odd_harmonic = 9;
 
-double harmonic_of_square(int h, double duty) { return std::sin(pi * h * duty) / (pi * h); }
+double harmonic_of_square(int h, double duty) {
+  return std::sin(std::numbers::pi * h * duty) / (std::numbers::pi * h);
+}
 
 /// Ratio of a measurement to the correlation function of one gate.
 double measurement_gain(const Sensor& sensor) {
@@ -50,12 +113,13 @@ SquareErrorEstimate::SquareErrorEstimate(const Camera& on, double duty, int high
   for (int f = 0; f <= highest_frequency; ++f) {
     Spectrum spectrum{.curvature = 0.0, .distance = Eigen::ArrayXd::Zero(phases_tabulated)};
     for (int h = 1; h <= highest_odd_harmonic; h += 2) {
-      const double amplitude = gain * level * std::abs(harmonic_of_square(h, duty)) / (pi * h) *
-                               std::abs(transfer[h * f]);
+      const double amplitude = gain * level * std::abs(harmonic_of_square(h, duty)) /
+                               (std::numbers::pi * h) * std::abs(transfer[h * f]);
       const double power = 2.0 * amplitude * amplitude;
-      spectrum.curvature += power * std::pow(2.0 * pi * h * f, 2);
+      spectrum.curvature += power * std::pow(2.0 * std::numbers::pi * h * f, 2);
       for (int i = 0; i < phases_tabulated; ++i)
-        spectrum.distance[i] += 2.0 * power * (1.0 - std::cos(2.0 * pi * h * i / phases_tabulated));
+        spectrum.distance[i] +=
+            2.0 * power * (1.0 - std::cos(2.0 * std::numbers::pi * h * i / phases_tabulated));
     }
     spectra_.push_back(std::move(spectrum));
   }
@@ -81,7 +145,7 @@ double SquareErrorEstimate::mean_m(const ErrorOfPoint& error_of_point) const {
 }
 
 double SquareErrorEstimate::local_m(double information) const {
-  return range_m_ * std::sqrt(2.0 / pi / information);
+  return range_m_ * std::sqrt(2.0 / std::numbers::pi / information);
 }
 
 double SquareErrorEstimate::cap_m(const SquareCode& code) const {

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 
 #include "core/shared/periodic.hpp"
 #include "design/gradients/harmonic_sums.hpp"
+#include "design/optimize/sampled_camera.hpp"
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/design/code_gradients.hpp"
 
 namespace tofsmith {
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/shared/random.hpp"
+#include "design/optimize/design_problem.hpp"
 #include "design/optimize/soft_decoder.hpp"
 #include "design/optimize/soft_two_return_decoder.hpp"
 #include "design/optimize/trial_batch.hpp"
@@ -78,6 +80,27 @@ class DepthErrorLoss {
   Eigen::VectorXd by_exposure_s_;
   Reading reading_;
   std::vector<float> by_electrons_;
+};
+
+/// Stochastic gradient w.r.t. the waveforms and shares, from new trials in every call. The
+/// objective is the smooth maximum over camera variants of the mean log error over light levels.
+class StochasticGradient {
+ public:
+  /// @param trials  per call, in total
+  StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
+
+  /// @param decision_sharpness  per log likelihood
+  SampledCode at(const SampledCode& code, double decision_sharpness, RandomStream& random);
+
+ private:
+  double mean_log(std::size_t variant) const;
+  double weight(std::size_t variant, std::size_t point) const;
+  void add(std::size_t variant, std::size_t point, double error);
+
+  const DesignProblem* problem_;
+  int trials_;
+  NoiseStore noise_;
+  std::vector<std::vector<double>> average_error_;  // 0: not yet known
 };
 
 }  // namespace tofsmith

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "camera/shared/listed_exposures.hpp"
-#include "design/shortest_run.hpp"
+#include "design/run_lengths.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/optimize.hpp"

@@ -6,9 +6,14 @@
 
 #include "core/shared/shared_progress.hpp"
 #include "design/optimize/design_problem.hpp"
-#include "design/optimize/switched_code.hpp"
+#include "design/optimize/waveform_parameters.hpp"
 
 namespace tofsmith {
+
+/// Assigns every cell to its largest gate class; with equal duties, the half that favours the first
+/// bucket most goes to it. Light is on in the brightest cells, whose number approximates the
+/// waveform best within the peak. Non-binary arms stay unchanged.
+SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code);
 
 /// Minimizes the depth error over all switching times jointly by stochastic gradients. Number and
 /// order of edges, the shortest run and the peak are kept. Gates of equal duties are not moved. If

@@ -12,13 +12,11 @@
 #include <utility>
 
 #include "core/shared/shared_progress.hpp"
-#include "design/designed_code.hpp"
-#include "design/optimize/binarization.hpp"
+#include "design/judge.hpp"
 #include "design/optimize/edge_polish.hpp"
 #include "design/optimize/optimize_pool.hpp"
 #include "design/optimize/optimize_starts.hpp"
 #include "design/optimize/optimized_code.hpp"
-#include "design/optimize/split_search.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

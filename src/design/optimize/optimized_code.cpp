@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "design/judge.hpp"
-#include "design/optimize/split_search.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {

@@ -2,13 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "design/baselines.hpp"
 #include "tofsmith/design/design.hpp"
+#include "tofsmith/design/optimize.hpp"
 
 namespace tofsmith {
+
+/// As optimize(), and continues each stage of the search from its best codes with free exposure
+/// shares: waveforms and shares then descend together, from equal shares. The codes of equal
+/// exposures are the same as without; the last code of each stage has exposure_shares(), if its
+/// error in trials of the search is smaller.
+/// @throws InvalidArgument also if the camera lists the times of the exposures
+std::vector<Candidate> optimize_with_shares(std::span<const Camera> variants, int exposures,
+                                            const OptimizeOptions& options,
+                                            std::span<const CodeSet> also,
+                                            const Progress& progress);
 
 /// Returns DesignOptions::exposures or, if empty, the three numbers with the best atlas codes;
 /// without them or with operating multipath, suggested_exposures().

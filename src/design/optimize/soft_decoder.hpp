@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "design/optimize/decoding_curve.hpp"
+#include "design/optimize/sampled_camera.hpp"
 
 namespace tofsmith {
 

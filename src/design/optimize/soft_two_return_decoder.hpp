@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "design/optimize/decoding_curve.hpp"
+#include "design/optimize/sampled_camera.hpp"
 #include "design/optimize/soft_decoder.hpp"
 
 namespace tofsmith {

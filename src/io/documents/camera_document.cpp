@@ -3,18 +3,24 @@
 #include "io/documents/camera_document.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
+#include "core/shared/text_numbers.hpp"
+#include "io/documents/lens_calibration.hpp"
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/lens_document.hpp"
-#include "io/text/field_reader.hpp"
-#include "io/text/field_writer.hpp"
+#include "io/shared/read_file.hpp"
+#include "io/text/field_toml.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
+#include "tofsmith/io/raw_format.hpp"
 
 namespace tofsmith {
 
@@ -128,6 +134,177 @@ std::string built_in_camera_toml(const std::string& name) {
 void write_camera_toml(const std::filesystem::path& path, const Camera& camera,
                        OutputPolicy policy) {
   write_file_atomically(path, camera_to_toml(camera), policy);
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json default_of(const KeyDescription& described, const Json& defaults) {
+  if (described.may_be_absent || !described.key.applies) return nullptr;
+  const Json::json_pointer place("/" + [&] {
+    std::string path = described.name;
+    std::replace(path.begin(), path.end(), '.', '/');
+    return path;
+  }());
+  return defaults.contains(place) ? defaults[place] : Json();
+}
+
+Json key_json(const KeyDescription& described, const Json& defaults) {
+  const Key& key = described.key;
+  Json entry = {
+      {"key", described.name},
+      {"part", described.part},
+      {"type", name_of(described.type)},
+      {"unit", unit_of_key(described.name)},
+      {"help", key.help},
+      {"range", key.range.is_restricted ? key.range.text(described.type == ValueType::integer ||
+                                                         described.type == ValueType::integers)
+                                        : ""},
+      {"condition", key.condition},
+      {"example", key.example}};
+  if (described.type != ValueType::table) entry["default"] = default_of(described, defaults);
+  if (!described.words.empty()) entry["words"] = described.words;
+  return entry;
+}
+
+template <typename Struct>
+std::string keys_json(Struct its) {
+  KeyList list;
+  describe(list, its);
+  const Json defaults = described_json(its);
+  Json keys = Json::array();
+  for (const KeyDescription& described : list.keys) keys.push_back(key_json(described, defaults));
+  return keys.dump(1);
+}
+
+}  // namespace
+
+std::vector<KeyDescription> describe_camera_keys(const Camera& camera) {
+  KeyList list;
+  Camera complete = camera;
+  describe(list, complete);
+  return std::move(list.keys);
+}
+
+std::vector<std::string> camera_keys() {
+  std::vector<std::string> names;
+  for (KeyDescription& described : describe_camera_keys(Camera()))
+    names.push_back(std::move(described.name));
+  return names;
+}
+
+std::string similar_camera_key(std::string_view key) {
+  std::string_view name = key.substr(key.rfind('.') + 1);
+  if (name == "bandwidth" || name == "bandwidth_hz") name = "cutoff_hz";
+  std::string similar;
+  std::ptrdiff_t most = -1;
+  for (const KeyDescription& described : describe_camera_keys(Camera())) {
+    const std::string& known = described.name;
+    if (described.type == ValueType::table || known.substr(known.rfind('.') + 1) != name) continue;
+    const std::ptrdiff_t common =
+        std::mismatch(key.begin(), key.end(), known.begin(), known.end()).first - key.begin();
+    if (common <= most) continue;
+    most = common;
+    similar = known;
+  }
+  return similar;
+}
+
+std::string camera_keys_json() {
+  Camera complete;
+  complete.operating = default_operating_range();
+  return keys_json(complete);
+}
+
+std::string raw_format_keys_json() { return keys_json(RawFormat()); }
+
+namespace {
+
+bool is_part_of_name(char c) { return is_letter_or_digit(c) || c == '_'; }
+
+/// Returns the position in the file of a field that Camera::validate() reports, or of its table.
+std::string place_of_field(const std::string& field, const TableReader::Places& places,
+                           const std::string& source_name) {
+  std::string place = source_name;
+  for (const auto& [key, where] : places)
+    if (field.starts_with(key) &&
+        (field.size() == key.size() || !is_part_of_name(field[key.size()])))
+      place = where;
+  return place;
+}
+
+void load_response(const std::string& name, const FieldReader& reader,
+                   const TableReader::Places& places, ImpulseResponse& response) {
+  if (response.kind != ImpulseResponse::Kind::file) return;
+  const auto file = reader.files().find(name + ".file");
+  if (file == reader.files().end()) return;
+  std::optional<double> time_step_s;
+  if (places.contains(name + ".time_step_s")) time_step_s = response.time_step_s;
+  response = read_impulse_response(file->second, time_step_s);
+}
+
+void load_lens(const FieldReader& reader, const TomlDocument& document, std::optional<Lens>& lens) {
+  const auto file = reader.files().find("lens.calibration");
+  if (file == reader.files().end()) return;
+  std::optional<DistortionModel> model;
+  if (lens->distortion) model = lens->distortion->model;
+  const auto camera = document.root().at_path("lens.calibration_camera").value_or(std::string());
+  lens = read_lens_calibration(file->second, model, camera);
+}
+
+}  // namespace
+
+Camera parse_camera_toml(std::string_view text, std::string_view source_name, Settings settings) {
+  TomlDocument document(text, source_name);
+  document.suggest_keys([](std::string_view key) {
+    const std::string similar = similar_camera_key(key);
+    return similar == key ? "" : similar;  // a key under another condition
+  });
+  for (const std::string& setting : settings) document.apply(setting);
+
+  Camera camera;
+  camera.name = std::filesystem::path(source_name).stem().string();
+  camera.operating = default_operating_range();
+  TableReader::Places places;
+  TableReader table(document, places);
+  FieldReader reader(table);
+  describe(reader, camera);
+  table.finish();
+  load_response("light.impulse_response", reader, places, camera.light.impulse_response);
+  load_response("sensor.impulse_response", reader, places, camera.sensor.impulse_response);
+  load_lens(reader, document, camera.lens);
+  try {
+    camera.validate();
+  } catch (const InvalidArgument& error) {
+    throw IoError(place_of_field(error.field(), places, document.source_name()), error.what());
+  }
+  return camera;
+}
+
+Camera read_camera_toml(const std::filesystem::path& path, Settings settings) {
+  return parse_camera_toml(read_text_file(path, max_settings_file_bytes), path.string(), settings);
+}
+
+Camera with_settings(const Camera& camera, Settings settings) {
+  return parse_camera_toml(camera_to_toml(camera), camera.name, settings);
+}
+
+Camera load_camera(const std::string& name_or_path, Settings settings) {
+  const std::vector<std::string> names = built_in_camera_names();
+  if (name_or_path.empty())
+    throw IoError("camera", fmt::format("found an empty name; expected a file or one of {}",
+                                        fmt::join(names, ", ")));
+  if (std::find(names.begin(), names.end(), name_or_path) != names.end())
+    return with_settings(built_in_camera(name_or_path), settings);
+  std::error_code ignored;
+  if (std::filesystem::exists(name_or_path, ignored))
+    return read_camera_toml(name_or_path, settings);
+  const std::string near = nearest_word(name_or_path, names);
+  throw IoError(name_or_path,
+                fmt::format("there is no such file and no built-in camera of that name ({}){}",
+                            fmt::join(names, ", "),
+                            near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
 }  // namespace tofsmith

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "io/images/exr.hpp"
-#include "io/images/pfm.hpp"
+#include "io/images/netpbm.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/io/npy.hpp"
 

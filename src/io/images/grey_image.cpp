@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/shared/file_kind.hpp"
 #include "io/shared/read_file.hpp"
@@ -12,6 +13,7 @@
 #include "tofsmith/io/image_file.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 NpyArray array_of(const PngImage& png, const std::string& file) {
@@ -39,6 +41,14 @@ NpyArray read_grey_image(const std::filesystem::path& path) {
   const std::vector<std::byte> content = read_binary_file(path);
   return extension == ".pgm" ? parse_pgm(content, path.string())
                              : parse_tiff(content, path.string());
+}
+
+double linear_from_srgb(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+double srgb_from_linear(double linear) {
+  return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
 }  // namespace tofsmith

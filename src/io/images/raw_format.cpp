@@ -6,8 +6,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
+#include "io/shared/read_file.hpp"
+#include "io/text/field_toml.hpp"
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
 
@@ -172,6 +177,85 @@ void RawFormat::validate() const {
   validate_rows(*this);
   require(!subtract_taps || black_level == 0.0, "black_level", black_level,
           "must be omitted with taps = \"subtract\", which cancels it");
+}
+
+namespace {
+
+/// For a wrong key ending in "_bytes", lists all such keys, because the most similar one is often
+/// wrong.
+void refuse_unknown_gaps(const TomlDocument& document, RawFormat format) {
+  KeyNames known;
+  describe(known, format);
+  std::erase_if(known.names, [](const std::string& name) { return !name.ends_with("_bytes"); });
+  for (const auto& [key, node] : document.root())
+    if (key.str().ends_with("_bytes") &&
+        std::ranges::find(known.names, key.str()) == known.names.end())
+      throw IoError(document.place_of(key.source()),
+                    fmt::format("unknown key {}; expected one of {}", key.str(),
+                                fmt::join(known.names, ", ")));
+}
+
+}  // namespace
+
+RawFormat parse_raw_format(std::string_view text, std::string_view source_name) {
+  const TomlDocument document(text, source_name);
+  TableReader::Places places;
+  TableReader table(document, places);
+  FieldReader reader(table);
+  RawFormat format;
+  describe(reader, format);
+  refuse_unknown_gaps(document, format);
+  table.finish();
+  try {
+    format.validate();
+  } catch (const InvalidArgument& error) {
+    const std::string key = error.field().substr(0, error.field().find('['));
+    const auto place = places.find(key);
+    throw IoError(place == places.end() ? document.source_name() : place->second, error.what());
+  }
+  return format;
+}
+
+RawFormat read_raw_format(const std::filesystem::path& path) {
+  return parse_raw_format(read_text_file(path, max_settings_file_bytes), path.string());
+}
+
+namespace {
+
+const std::map<std::string, std::string>& known_formats() {
+  static const std::map<std::string, std::string> formats = {
+      {"arducam-tof",
+       "# Arducam ToF camera through V4L2 as pixel format Y12: four buffers per frame, one per "
+       "phase.\n#   v4l2-ctl --set-fmt-video=width=240,height=180,pixelformat=Y12 --stream-mmap "
+       "--stream-to=-\n# Layout from a public driver for the Raspberry Pi (arducam_tof.cpp): "
+       "signed 11 bits, rows from\n# bottom to top, depth = c / (4 pi f) atan2(third - first, "
+       "fourth - second).\nwidth = 240\nheight = 180\nmeasurements = 4\nbits = 11\ncontainer_bits "
+       "= 16\nunused_bits = \"ignored\"\nsigned = true\norder = [3, 2, 1, 0]\nflip_rows = true\n"}};
+  return formats;
+}
+
+std::string reason_of(const std::string& camera) {
+  if (camera == "kinect-v2")
+    return "its columns are interleaved and its numbers require a lookup table (unpack them with "
+           "libfreenect2, and save the nine images as .npy)";
+  return "the format of its raw frames is not published";
+}
+
+}  // namespace
+
+std::vector<std::string> built_in_raw_format_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, text] : known_formats()) names.push_back(name);
+  return names;
+}
+
+std::string built_in_raw_format_toml(const std::string& camera) {
+  static_cast<void>(built_in_camera(camera));  // rejects unknown names
+  const auto found = known_formats().find(camera);
+  if (found != known_formats().end()) return found->second;
+  reject("camera", camera,
+         fmt::format("has no description of its raw frames: {}; expected {}", reason_of(camera),
+                     fmt::join(built_in_raw_format_names(), ", ")));
 }
 
 }  // namespace tofsmith

@@ -17,11 +17,11 @@
 #include "io/images/array_image.hpp"
 #include "io/images/grey_image.hpp"
 #include "io/images/raw_dump_reader.hpp"
-#include "io/images/raw_sizes.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 /// Unpacking or transposing temporarily needs a second copy.
@@ -373,6 +373,31 @@ RawFrames read_raw_frames(const std::vector<std::filesystem::path>& files,
 
 RawFrames read_raw_frames(const std::filesystem::path& path, std::optional<int> measurements) {
   return read_raw_frames(std::vector{path}, {.measurements = measurements});
+}
+
+namespace {
+
+std::string raw_extension(const std::filesystem::path& path) {
+  return known_extension(path, {".npy", ".npz"});
+}
+
+}  // namespace
+
+void write_raw_frames(const std::filesystem::path& path, const RawFrames& raw,
+                      OutputPolicy policy) {
+  const std::string extension = raw_extension(path);
+  require(raw.frames >= 1, "frames", raw.frames, "must be >= 1");
+  require(raw.height >= 1, "height", raw.height, "must be >= 1");
+  require(raw.width >= 1, "width", raw.width, "must be >= 1");
+  require(raw.measurements >= 1, "measurements", raw.measurements, "must be >= 1");
+  NpyShape shape = {static_cast<std::size_t>(raw.height), static_cast<std::size_t>(raw.width),
+                    static_cast<std::size_t>(raw.measurements)};
+  if (raw.frames > 1) shape.insert(shape.begin(), static_cast<std::size_t>(raw.frames));
+  const auto array = NpyArray::of<float>(shape, raw.values);
+  if (extension == ".npy")
+    write_npy(path, array, policy);
+  else
+    write_npz(path, {{"raw", array}}, policy);
 }
 
 }  // namespace tofsmith

@@ -9,7 +9,6 @@
 
 #include "io/image_limits.hpp"
 #include "io/images/raw_dump_reader.hpp"
-#include "io/images/raw_sizes.hpp"
 #include "io/recordings/decode_plan.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

@@ -9,17 +9,143 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 
+#include "core/shared/enum_words.hpp"
 #include "io/images/depth_kind_fields.hpp"
 #include "io/images/exr.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/point_cloud.hpp"
 
 namespace tofsmith {
+
+Undistortion::Undistortion(const PinholeView& view) {
+  const PixelRays rays(view);
+  const PinholeView ideal = view.ideal();
+  const auto width = static_cast<std::size_t>(view.width);
+  source_.assign(static_cast<std::size_t>(view.height) * width, -1);
+  radial_ratio_.assign(source_.size(), 1.0f);
+  parallel_for(view.height, [&](std::int64_t line) {
+    const int row = static_cast<int>(line);
+    for (int column = 0; column < view.width; ++column) {
+      const auto seen_at = view.pixel_of(ideal.ray(row, column));
+      if (!seen_at) continue;
+      const double at_row = std::round(seen_at->y()), at_column = std::round(seen_at->x());
+      if (!(at_row >= 0.0 && at_row < view.height && at_column >= 0.0 && at_column < view.width))
+        continue;
+      const int source_row = static_cast<int>(at_row), source_column = static_cast<int>(at_column);
+      const std::size_t pixel =
+          static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column);
+      source_[pixel] = source_row * view.width + source_column;
+      radial_ratio_[pixel] = static_cast<float>(ideal.radial_per_z(row, column) /
+                                                rays.radial_per_z(source_row, source_column));
+    }
+  });
+}
+
+std::size_t Undistortion::bytes() const {
+  constexpr std::size_t largest_item = sizeof(float);
+  return source_.size() * (sizeof(std::int32_t) + sizeof(float) + largest_item);
+}
+
+void Undistortion::turn_radial(Image<float>& depth_m) const {
+  for (std::size_t i = 0; i < radial_ratio_.size(); ++i) depth_m.pixels[i] *= radial_ratio_[i];
+}
+
+namespace {
+
+constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", words_of(DepthKind{}));
+
+}  // namespace
+
+std::string_view help_of_outputs() {
+  static const std::string text = [] {
+    std::string all = "planes to write; others are not computed";
+    for (const PlaneDescription& described : plane_descriptions)
+      all +=
+          fmt::format("{}{}{}: {}", described.plane == DecodedPlane{} ? ". " : "; ", described.word,
+                      described.unit.empty() ? "" : fmt::format(" [{}]", described.unit),
+                      help_of(described.plane));
+    return all;
+  }();
+  return text;
+}
+
+std::string_view name_of(DepthKind kind) { return kind_words.of(kind); }
+
+DepthKind parse_depth_kind(std::string_view name) { return kind_words.parse(name); }
+
+NpyType type_of(DecodedPlane plane) {
+  static const DepthImage types;
+  return with_plane(
+      plane,
+      []<typename Value>(const Image<Value>&) {
+        if constexpr (std::is_enum_v<Value>)
+          return npy_type_of<std::underlying_type_t<Value>>;
+        else
+          return npy_type_of<Value>;
+      },
+      types);
+}
+
+std::size_t bytes_per_pixel(const std::vector<DecodedPlane>& planes) {
+  std::size_t bytes = 0;
+  for (const DecodedPlane plane : planes) bytes += item_size(type_of(plane));
+  return bytes;
+}
+
+void undistort(DepthImage& image, const Undistortion& undistortion, bool as_z) {
+  for_each_plane(
+      [&]<typename Value>(Image<Value>& plane) {
+        if (!plane.empty()) undistortion.apply(plane, no_value<Value>);
+      },
+      image);
+  if (!as_z && !image.depth_m.empty()) undistortion.turn_radial(image.depth_m);
+}
+
+namespace {
+
+/// Statuses become their codes.
+Image<float> floats_of(const DepthImage& image, DecodedPlane plane) {
+  return with_plane(
+      plane,
+      [](const auto& values) {
+        Image<float> floats(values.height, values.width);
+        std::ranges::transform(values.pixels, floats.pixels.begin(),
+                               [](auto value) { return static_cast<float>(value); });
+        return floats;
+      },
+      image);
+}
+
+}  // namespace
+
+std::span<const std::byte> items_of(const DepthImage& image, DecodedPlane plane, int rows) {
+  return with_plane(
+      plane,
+      [rows](const auto& values) {
+        const std::size_t count =
+            static_cast<std::size_t>(rows) * static_cast<std::size_t>(values.width);
+        return std::as_bytes(std::span(values.pixels).first(count));
+      },
+      image);
+}
+
+void turn_into_z(float* depth_m, int first_row, int rows, const PixelRays& pixel_rays) {
+  const int width = pixel_rays.view().width;
+  parallel_for(rows, [&](std::int64_t row) {
+    float* depth = depth_m + row * width;
+    for (int column = 0; column < width; ++column)
+      depth[column] = static_cast<float>(
+          depth[column] *
+          (1.0 / pixel_rays.radial_per_z(first_row + static_cast<int>(row), column)));
+  });
+}
 
 namespace {
 

@@ -3,19 +3,59 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
-#include "io/recordings/decoded_planes.hpp"
 #include "io/recordings/read_ahead.hpp"
-#include "io/recordings/undistortion.hpp"
+#include "tofsmith/core/image.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/depth_kind.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
+
+/// Resamples images to the ideal pinhole. Each pixel has the values of the source pixel nearest to
+/// its ray, so that depths are not mixed.
+class Undistortion {
+ public:
+  /// @throws std::invalid_argument as PinholeView::validate()
+  explicit Undistortion(const PinholeView& view);
+
+  /// Memory, including one plane during resampling [bytes].
+  std::size_t bytes() const;
+
+  /// @param none  value of pixels that the image does not cover
+  template <typename Value>
+  void apply(Image<Value>& plane, Value none) const {
+    const std::vector<Value> from = plane.pixels;
+    for (std::size_t i = 0; i < source_.size(); ++i)
+      plane.pixels[i] = source_[i] < 0 ? none : from[static_cast<std::size_t>(source_[i])];
+  }
+  /// Converts radial distances after apply(), so that z does not change.
+  void turn_radial(Image<float>& depth_m) const;
+
+ private:
+  std::vector<std::int32_t> source_;  // source pixel of each pixel; -1: none
+  std::vector<float> radial_ratio_;   // of the pixel's ray to the source's ray, at the same z
+};
+
+std::size_t bytes_per_pixel(const std::vector<DecodedPlane>& planes);
+
+/// @param as_z  the depth is z, not radial
+void undistort(DepthImage& image, const Undistortion& undistortion, bool as_z);
+
+std::span<const std::byte> items_of(const DepthImage& image, DecodedPlane plane, int rows);
+
+/// Converts radial distance in place.
+/// @param depth_m  rows with the width of the view
+/// @param first_row  index in the view
+void turn_into_z(float* depth_m, int first_row, int rows, const PixelRays& pixel_rays);
 
 /// Writes planes by extension: depth as .npy, .pfm and .png; other planes also as channels of .exr,
 /// arrays of .npz, or scalars of the points of .ply and .pcd.

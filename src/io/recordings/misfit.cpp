@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "decode/shared/saturation_level.hpp"
+#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/decoder.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/csv.hpp"
 
 namespace tofsmith {
 

@@ -16,7 +16,6 @@
 #include "core/shared/text_numbers.hpp"
 #include "io/text/toml_hints.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/unit_text.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

@@ -5,10 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <optional>
 
 #include "core/shared/text_numbers.hpp"
 #include "io/text/shared/line_cursor.hpp"
+#include "io/text/shared/table_reader.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode_arguments.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "described_options.hpp"
+#include "help_pages.hpp"
+#include "number_checks.hpp"
+#include "session.hpp"
+#include "tap_arguments.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+/// Returns the exposures of a table with `measurements` columns, in the order of the camera.
+std::vector<int> order_of(const std::vector<int>& given, const Camera& camera, int measurements,
+                          const TapArguments& taps) {
+  if (!given.empty()) return given;
+  if (camera.playback && !camera.playback->order.empty()) return camera.playback->order;
+  const bool reads_taps = camera.sensor.readout == Readout::separate && !camera.sensor.is_signed();
+  const int side = reads_taps ? taps.taps.value_or(camera.sensor.taps) : 1;
+  std::vector<int> order(
+      static_cast<std::size_t>(measurements % side == 0 ? measurements / side : measurements));
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+}  // namespace
+
+void TableArguments::add_to(CLI::App& command) {
+  command
+      .add_option("--range-m", range_m_,
+                  "unambiguous range of a measured table in metres (default: the camera's)")
+      ->check(positive_number(1e6))
+      ->transform(number_in("m"))
+      ->group(for_experts);
+  command
+      .add_option(
+          "--ambient", ambient_,
+          "ambient light in the columns of a measured table: equal in all columns (default, unless "
+          "the file specifies it), proportional to the mean of each column, or none")
+      ->check(one_of({"equal", "mean", "none"}))
+      ->group(for_experts);
+  command
+      .add_option(
+          "--table-axes", axes_,
+          "axes of a measured table: samples x measurements (nk) or measurements x samples (kn)")
+      ->check(one_of({"nk", "kn"}))
+      ->group(for_experts);
+  command
+      .add_option("--order", order_, "order of the code's exposures in the frames, such as 0,3,2,1")
+      ->delimiter(',');
+  command.add_flag("--reverse", reversed_,
+                   "reverse the direction of delay, for frames in which near and far are swapped");
+  command
+      .add_flag("--keep-end-point", keep_end_point_,
+                "keep the last sample of a measured table even if it equals the first")
+      ->group(for_experts);
+}
+
+DecodingSource TableArguments::load(const std::string& code, const Camera& camera,
+                                    bool default_camera, const TapArguments& taps) const {
+  const char* const of_tables = range_m_            ? "--range-m"
+                                : !ambient_.empty() ? "--ambient"
+                                : !axes_.empty()    ? "--table-axes"
+                                : keep_end_point_   ? "--keep-end-point"
+                                                    : nullptr;
+  if (of_tables && !names_measured_table(code)) {
+    load_camera_code(code, camera, taps.file_options_for({code}));  // reports an invalid code first
+    throw UsageError(
+        fmt::format("{} is only valid with a measured table; {} is a code, for which the camera "
+                    "determines these values",
+                    of_tables, code));
+  }
+  DecodingTableOptions options{.file = taps.file_options_for({code}),
+                               .range_m = range_m_,
+                               .ambient = {},
+                               .axes = {},
+                               .keep_end_point = keep_end_point_,
+                               .order = order_,
+                               .reversed = reversed_};
+  if (!ambient_.empty()) options.ambient = parse_measured_ambient(ambient_);
+  if (!axes_.empty()) options.axes = parse_table_axes(axes_);
+  DecodingSource source{load_decoding_table(code, camera, options), {}, {}, {}};
+  if (range_m_)
+    source.range_source = "--range-m";
+  else if (default_camera)
+    source.range_source = fmt::format(
+        "of the default camera {}; {}", camera.name,
+        source.is_measured ? "--range-m or --camera override it" : "--camera overrides it");
+  else
+    source.range_source = fmt::format("of the camera {}", camera.name);
+  source.tell_range = source.is_measured || default_camera;
+  source.order = order_of(order_, camera, source.table.measurements(), taps);
+  return source;
+}
+
+namespace {
+
+void list_devices(bool as_json) {
+  const std::vector<Device> devices = Device::all();
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Device& device : devices) {
+    const DeviceInfo& info = device.info();
+    list.push_back({{"name", info.name},
+                    {"kind", name_of(info.kind)},
+                    {"memory_bytes", info.memory_bytes},
+                    {"doubles", info.has_doubles},
+                    {"platform", info.platform},
+                    {"version", info.version}});
+    if (!as_json)
+      fmt::print("{}  {} ({}, {:.1f} GB, {}): {}, {}\n", list.size() - 1, info.name,
+                 name_of(info.kind), 1e-9 * static_cast<double>(info.memory_bytes),
+                 info.has_doubles ? "doubles" : "no doubles", info.platform, info.version);
+  }
+  if (as_json)
+    fmt::print("{}\n", nlohmann::ordered_json({{"devices", list}}).dump(2));
+  else if (devices.empty())
+    fmt::print("{}\n", Device::none_found());
+}
+
+}  // namespace
+
+void DeviceArguments::add_to(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--device",
+          [this, &command](const std::string& name) {
+            name_ = name;
+            if (name != "list") return;
+            const CLI::Option* json = command.get_parent()->get_option_no_throw("--json");
+            list_devices(json && json->count() > 0);
+            throw CLI::Success();
+          },
+          "device for averaging, filtering and decoding: cpu; gpu: the first OpenCL GPU; auto: "
+          "the first GPU, but cpu for small frames and for methods other than zncc; list: print "
+          "the OpenCL devices and exit; or an index or part of a name in this list. OpenCL "
+          "devices support only zncc, with the same results as cpu")
+      ->default_str(name_)
+      ->group(for_experts);
+}
+
+std::unique_ptr<FrameBackend> DeviceArguments::backend(
+    std::unique_ptr<const DepthDecoder> decoder) const {
+  try {
+    return frame_backend(name_, std::move(decoder));
+  } catch (const std::invalid_argument& error) {
+    throw wrong_option(error);
+  }
+}
+
+namespace {
+
+template <typename Options>
+std::vector<std::string> keys_of(Options options = {}) {
+  std::vector<std::string> names;
+  for_each_field(options, [&](const auto& field) { names.emplace_back(field.name); });
+  return names;
+}
+
+/// Sets the field named by "key=value" in `argument`.
+/// @throws UsageError
+template <typename Options>
+void set_field(const char* argument, const std::string& setting, Options& options) {
+  const std::size_t at = setting.find('=');
+  if (at == std::string::npos)
+    throw UsageError(fmt::format("{}: found {}; expected KEY=VALUE", argument, setting));
+  const std::string key = setting.substr(0, at), value = setting.substr(at + 1);
+  bool is_known = false;
+  for_each_field(options, [&](const auto& field) {
+    if (field.name != key) return;
+    is_known = true;
+    if (!CLI::detail::lexical_cast(value, field.value) ||
+        !field.range.contains(static_cast<double>(field.value)))
+      throw UsageError(fmt::format(
+          "{} {}: found {}; must be {}", argument, key, value,
+          field.range.text(std::is_integral_v<std::remove_cvref_t<decltype(field.value)>>)));
+  });
+  if (is_known) return;
+  const std::vector<std::string> keys = keys_of<Options>();
+  const std::string near = nearest_word(key, keys);
+  throw UsageError(fmt::format("{}: unknown key {}; expected one of {}{}", argument, key,
+                               fmt::join(keys, ", "),
+                               near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+/// Adds an option that sets fields of Options and requires another option.
+template <typename Options>
+void add_settings(CLI::App& command, const char* argument, const char* whose, CLI::Option* with,
+                  std::vector<std::string>& settings) {
+  command
+      .add_option(argument, settings,
+                  fmt::format("KEY=VALUE of {} (repeatable); keys: {}", whose,
+                              fmt::join(keys_of<Options>(), ", ")))
+      ->allow_extra_args(false)
+      ->needs(with)
+      ->group(for_experts);
+}
+
+}  // namespace
+
+void FilterArguments::add_to(CLI::App& command) {
+  std::vector<std::string> strengths;
+  for (const FilterStrength strength : all_filter_strengths)
+    strengths.emplace_back(name_of(strength));
+  CLI::Option* const filter =
+      command
+          .add_option("--filter", strength_,
+                      "spatial filter, which averages measurements of neighbouring pixels at "
+                      "the same depth before decoding: light, normal or strong (default: off)")
+          ->check(one_of(strengths));
+  add_settings<FilterOptions>(command, "--filter-set", "the spatial filter", filter, settings_);
+  CLI::Option* const time_filter =
+      command
+          .add_option("--time-filter", max_frames_,
+                      "temporal filter, which averages each pixel over about this many frames "
+                      "while the pixel does not change (default: off)")
+          ->check(number_that(">= 1", [](double value) { return value >= 1.0; }));
+  add_field_option(command, time_options_, "look_ahead", "--look-ahead")
+      ->needs(time_filter)
+      ->group(for_experts);
+  add_settings<TimeFilterOptions>(command, "--time-filter-set", "the temporal filter", time_filter,
+                                  time_settings_);
+}
+
+std::optional<FilterOptions> FilterArguments::options() const {
+  if (strength_.empty()) return std::nullopt;
+  FilterOptions options = FilterOptions::of(parse_filter_strength(strength_));
+  for (const std::string& setting : settings_) set_field("--filter-set", setting, options);
+  return options;
+}
+
+std::optional<TimeFilterOptions> FilterArguments::time_options() const {
+  if (max_frames_ == 0) return std::nullopt;
+  TimeFilterOptions options = time_options_;
+  options.max_frames = max_frames_;
+  for (const std::string& setting : time_settings_)
+    set_field("--time-filter-set", setting, options);
+  return options;
+}
+
+}  // namespace tofsmith::apps
