@@ -40,6 +40,13 @@ std::optional<double> number_in(std::string_view text) {
   return text.empty() ? number : std::nullopt;
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
 std::string letters_and_digits(std::string_view text) {
   std::string word;
   for (const char c : text)

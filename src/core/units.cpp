@@ -86,12 +86,6 @@ struct PrefixedUnit {
   std::string_view base;
 };
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 /// Spelling of unit_of_key().
 std::string_view spelling(std::string_view unit) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 9> others = {

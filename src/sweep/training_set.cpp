@@ -15,6 +15,7 @@
 
 #include "core/shared/hash.hpp"
 #include "core/shared/random.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/shared/line_cursor.hpp"

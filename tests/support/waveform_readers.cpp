@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/byte_cursor.hpp"
 #include "io/shared/byte_order.hpp"
 #include "io/text/shared/line_cursor.hpp"

@@ -21,6 +21,9 @@ std::optional<double> take_number(std::string_view& text);
 /// Parses all of `text`, which may begin with a plus sign.
 std::optional<double> number_in(std::string_view text);
 
+/// Without surrounding blanks and line ends.
+std::string_view trimmed(std::string_view text);
+
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 constexpr bool is_letter_or_digit(char c) { return is_letter(c) || is_digit(c); }

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "core/shared/text_numbers.hpp"
-#include "io/text/shared/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -48,13 +48,6 @@ std::vector<TextLine> content_lines(std::string_view text) {
   return lines;
 }
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
 std::optional<double> finite_number_in(std::string_view text) {
   const std::optional<double> number = number_in(trimmed(text));
   return number && std::isfinite(*number) ? number : std::nullopt;

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "core/shared/text_numbers.hpp"
-#include "io/text/shared/line_cursor.hpp"
 #include "io/text/shared/table_reader.hpp"
 #include "tofsmith/core/units.hpp"
 

@@ -42,8 +42,6 @@ struct TextLine {
 /// Skips empty lines, comments, which begin with '#', and a byte order mark.
 std::vector<TextLine> content_lines(std::string_view text);
 
-std::string_view trimmed(std::string_view text);
-
 /// Ignores surrounding blanks.
 std::optional<double> finite_number_in(std::string_view text);
 
