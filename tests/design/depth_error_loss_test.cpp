@@ -323,7 +323,7 @@ TEST(TwoReturnDescent, SeparatesAmbiguousPairs) {
                            .with_two_buckets();
   RandomStream random(1, 1);
   const WaveformParameters start =
-      optimize_start(seeing, std::span(&code, 1), 0, random).parameters;
+      optimize_start(seeing, std::span(&code, 1), {}, 0, random).parameters;
   DescentSchedule schedule;
   schedule.steps = 150;
   schedule.trials_per_step = 60;

@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "design/optimize/optimize_pool.hpp"
+#include "design/optimize/optimize_starts.hpp"
 #include "design/optimize/optimized_code.hpp"
 #include "same_code.hpp"
 #include "tofsmith/core/error.hpp"
@@ -245,6 +248,34 @@ TEST(Optimize, HistoryNeverRisesAndStopsEarlyWithoutGain) {
     EXPECT_EQ(found.search->steps[i].work, found.search->steps[i - 1].work + 1);
   }
   EXPECT_THAT(found.message, HasSubstr("stopped early without further gain"));
+}
+
+double amplitude_of_frequency_1(const Eigen::VectorXd& samples) {
+  std::complex<double> sum = 0.0;
+  for (Eigen::Index n = 0; n < samples.size(); ++n)
+    sum += std::polar(samples[n], -2.0 * std::numbers::pi * static_cast<double>(n) /
+                                      static_cast<double>(samples.size()));
+  return std::abs(sum) / static_cast<double>(samples.size());
+}
+
+TEST(FrequencyMixtures, BeginWithFrequency1EndWithAHigherOneAndDiffer) {
+  for (const int taps : {1, 2, 3, 4})
+    for (const int exposures : {3, 5, 8}) {
+      Camera camera = small_camera();
+      camera.sensor.taps = taps;
+      const DesignProblem problem = make_design_problem(std::span(&camera, 1), exposures, 48);
+      const std::vector<OptimizeStart> mixtures = frequency_mixtures(problem);
+      EXPECT_GE(mixtures.size(), 9u) << taps << " taps, " << exposures << " exposures";
+      for (auto it = mixtures.begin(); it != mixtures.end(); ++it) {
+        const Eigen::MatrixXd light = render(problem.space, it->parameters, {6.0, 8.0}).modulation;
+        EXPECT_GT(amplitude_of_frequency_1(light.col(0)), 0.5) << it->name;
+        EXPECT_LT(amplitude_of_frequency_1(light.col(exposures - 1)), 0.2) << it->name;
+        for (auto other = mixtures.begin(); other != it; ++other)
+          EXPECT_TRUE(it->parameters.modulation != other->parameters.modulation ||
+                      it->parameters.demodulation != other->parameters.demodulation)
+              << it->name << ", " << other->name;
+      }
+    }
 }
 
 TEST(BestOfStarts, TakesTheFirstEntriesOfEveryStart) {

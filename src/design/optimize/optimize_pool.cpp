@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "design/optimize/depth_error_loss.hpp"
 #include "design/optimize/optimize_starts.hpp"
@@ -379,16 +380,45 @@ void OptimizePool::keep(std::vector<PoolEntry> entries) {
   if (entries_.size() > max_pool) entries_.resize(max_pool);
 }
 
+std::vector<OptimizeStart> OptimizePool::best_mixtures(std::ptrdiff_t count) const {
+  constexpr int trials = 200;  // per light level
+  if (count <= 0) return {};
+  std::vector<OptimizeStart> all = frequency_mixtures(*problem_);
+  const CodeJudge judge(*problem_, trials, options_.seed, work_item(Phase::judging, 2));
+  std::vector<std::pair<double, std::size_t>> ranked(all.size());
+  parallel_for(std::ssize(all), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    const SampledCode code =
+        render(problem_->space, all[at].parameters, DescentSchedule().final_sharpness);
+    ranked[at] = {judge.score(code).log_error_bin, at};
+  });
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<OptimizeStart> best;
+  for (const auto& [log_error, i] : ranked) {
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const OptimizeStart& better) {
+      return better.name == all[i].name;
+    });
+    if (is_new && std::ssize(best) < count) best.push_back(std::move(all[i]));
+  }
+  return best;
+}
+
 void OptimizePool::run_starts(const PoolStage& stage, std::span<const CodeSet> also,
                               const Progress& progress) {
   const auto count = static_cast<std::size_t>(stage.starts);
+  if (starts_done_ == 0) {
+    constexpr std::ptrdiff_t max_mixtures = 16;
+    codes_ = fitting_codes(problem_->space, also);
+    mixtures_ = best_mixtures(std::min(max_mixtures, stage.starts - std::ssize(codes_)));
+  }
   SharedProgress shared(
       progress, static_cast<double>(count - starts_done_) * options_.steps_per_start, "starts");
   for (std::size_t first = starts_done_; first < count; first += together) {
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::drawing_starts, i));
-      OptimizeStart start = optimize_start(*problem_, also, static_cast<int>(i), random);
+      OptimizeStart start =
+          optimize_start(*problem_, codes_, mixtures_, static_cast<int>(i), random);
       entries.push_back({std::move(start.parameters), {}, std::move(start.name), i});
     }
     descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first, shared);

@@ -12,6 +12,7 @@
 #include "core/shared/shared_progress.hpp"
 #include "design/optimize/depth_error_loss.hpp"
 #include "design/optimize/design_problem.hpp"
+#include "design/optimize/optimize_starts.hpp"
 #include "design/optimize/trial_batch.hpp"
 #include "tofsmith/design/optimize.hpp"
 
@@ -129,13 +130,17 @@ class OptimizePool {
   void descend_all(std::vector<PoolEntry>& entries, int steps, double rate, std::uint64_t phase,
                    std::size_t first_item, SharedProgress& progress) const;
   void keep(std::vector<PoolEntry> entries);
+  /// Returns up to `count` mixtures of different frequencies with the smallest errors, best first.
+  std::vector<OptimizeStart> best_mixtures(std::ptrdiff_t count) const;
 
   const DesignProblem* problem_;
   OptimizeOptions options_;
   double bin_m_;
   CodeJudge quick_judge_;  ///< few trials
   CodeJudge judge_;
-  std::vector<PoolEntry> entries_;    ///< best first
+  std::vector<CodeSet> codes_;           ///< starts
+  std::vector<OptimizeStart> mixtures_;  ///< starts after the codes
+  std::vector<PoolEntry> entries_;       ///< best first
   std::vector<PoolEntry> continued_;  ///< entries after the starts, which the first hops continue
   std::vector<SearchStep> history_;
   std::int64_t steps_ = 0;

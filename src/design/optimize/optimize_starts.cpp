@@ -125,28 +125,56 @@ OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double
   return start;
 }
 
-/// The first exposures have the lowest frequency, so that depth is unique; the others `high` with
-/// evenly spaced phases, or random frequencies and phases if `high` is 0.
-SampledCode mixture_of_frequencies(const DesignProblem& problem, int high, RandomStream& random) {
-  const WaveformSpace& space = problem.space;
-  const int needed = space.taps >= 2 ? (space.taps == 2 ? 2 : 1) : (space.exposures >= 4 ? 3 : 2);
-  const int highest = highest_useful_frequency(problem);
-  const double spread = space.taps >= 2 ? 0.5 : 1.0;  // buckets add the opposite phase
+/// Frequencies and phases [turns] of the exposures.
+struct ExposureTones {
+  std::vector<int> frequency;
+  std::vector<double> phase;
+};
+
+/// Adds exposures of one frequency with evenly spaced phases.
+void add_exposures(ExposureTones& tones, int frequency, int exposures, double spread,
+                   double first_phase = 0.0) {
+  for (int e = 0; e < exposures; ++e) {
+    tones.frequency.push_back(frequency);
+    tones.phase.push_back(first_phase + (exposures == 2 ? 0.25 * e : e * spread / exposures));
+  }
+}
+
+double spread_of_phases(const WaveformSpace& space) {
+  return space.taps >= 2 ? 0.5 : 1.0;  // buckets add the opposite phase
+}
+
+/// Exposures of frequency 1 that measure depth alone.
+int exposures_for_depth(const WaveformSpace& space) {
+  if (space.taps > 2) return 1;
+  if (space.taps == 2) return 2;
+  return space.exposures >= 4 ? 3 : 2;
+}
+
+SampledCode mixture_of_frequencies(const WaveformSpace& space, const ExposureTones& tones) {
   SampledCode code = empty_code(space);
+  const double duty = std::max(1.0 / space.peak_factor, space.taps > 2 ? 0.5 / space.taps : 0.2);
   for (int e = 0; e < space.exposures; ++e) {
-    int frequency = 1;
-    double phase = static_cast<double>(e) / needed * spread;
-    if (e >= needed) {
-      const int others = space.exposures - needed;
-      frequency =
-          high > 0 ? high : 2 + static_cast<int>(random.uniform() * std::max(1, highest - 1));
-      phase = high == 0 ? random.uniform() : (e - needed) * (others == 2 ? 0.25 : spread / others);
-    }
-    const double duty = std::max(1.0 / space.peak_factor, space.taps > 2 ? 0.5 / space.taps : 0.2);
-    write_pulses(space, frequency, duty, e, code);
-    write_turns(space, frequency, phase, e, code);
+    const auto i = static_cast<std::size_t>(e);
+    write_pulses(space, tones.frequency[i], duty, e, code);
+    write_turns(space, tones.frequency[i], tones.phase[i], e, code);
   }
   return code;
+}
+
+/// The first exposures have frequency 1, so that depth is unique; the others have random
+/// frequencies and phases.
+SampledCode random_mixture(const DesignProblem& problem, RandomStream& random) {
+  const WaveformSpace& space = problem.space;
+  const int highest = highest_useful_frequency(problem);
+  ExposureTones tones;
+  add_exposures(tones, 1, std::min(space.exposures, exposures_for_depth(space)),
+                spread_of_phases(space));
+  while (std::ssize(tones.frequency) < space.exposures) {
+    tones.frequency.push_back(2 + static_cast<int>(random.uniform() * std::max(1, highest - 1)));
+    tones.phase.push_back(random.uniform());
+  }
+  return mixture_of_frequencies(space, tones);
 }
 
 SampledCode random_gates(const DesignProblem& problem, bool random_light, RandomStream& random) {
@@ -171,10 +199,6 @@ SampledCode sampled_on(const WaveformSpace& space, const CodeSet& code) {
           code.resampled(space.samples()).demodulation_samples()};
 }
 
-bool fits_space(const WaveformSpace& space, const CodeSet& code) {
-  return code.exposures() == space.exposures && code.taps() == space.taps;
-}
-
 WaveformParameters random_pair(const DesignProblem& problem, RandomStream& random) {
   WaveformSpace one = problem.space;
   one.exposures = 1;
@@ -197,24 +221,60 @@ WaveformParameters random_pair(const DesignProblem& problem, RandomStream& rando
   return parameters_near(one, code, start_scale);
 }
 
-OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> also, int index,
-                             RandomStream& random) {
+std::vector<OptimizeStart> frequency_mixtures(const DesignProblem& problem) {
+  constexpr int max_middle = 4;
   const WaveformSpace& space = problem.space;
+  const int highest = highest_useful_frequency(problem);
+  const int least = space.taps > 2 ? 1 : 2, most = exposures_for_depth(space) + 1;
+  std::vector<OptimizeStart> starts;
+  const auto add = [&](int first, int middle, int of_middle, double middle_phase, int high) {
+    const double spread = spread_of_phases(space);
+    ExposureTones tones;
+    add_exposures(tones, 1, first, spread);
+    add_exposures(tones, middle, of_middle, spread, middle_phase);
+    add_exposures(tones, high, space.exposures - first - of_middle, spread);
+    starts.push_back({of_middle > 0 ? fmt::format("frequencies 1, {} and {}", middle, high)
+                                    : fmt::format("frequencies 1 and {}", high),
+                      parameters_near(space, mixture_of_frequencies(space, tones), start_scale)});
+  };
+  for (int first = least; first <= std::min(most, space.exposures - 1); ++first)
+    for (int high = 2; high <= highest; ++high) {
+      add(first, 1, 0, 0.0, high);
+      const int others = space.exposures - first;
+      for (int middle = 2; others > 1 && middle < std::min(high, max_middle + 1); ++middle) {
+        for (const double phase : {0.0, 0.25}) add(first, middle, 1, phase, high);
+        if (others > 2) add(first, middle, 2, 0.0, high);
+      }
+    }
+  return starts;
+}
+
+std::vector<CodeSet> fitting_codes(const WaveformSpace& space, std::span<const CodeSet> also) {
   std::vector<CodeSet> codes;
   for (const CodeSet& code : also)
-    if (fits_space(space, code)) codes.push_back(code);
+    if (code.exposures() == space.exposures && code.taps() == space.taps) codes.push_back(code);
   for (CodeSet& family : families_of(space))
     if (std::none_of(codes.begin(), codes.end(),
                      [&](const CodeSet& code) { return code.name() == family.name(); }))
       codes.push_back(std::move(family));
+  return codes;
+}
+
+OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> codes,
+                             std::span<const OptimizeStart> mixtures, int index,
+                             RandomStream& random) {
   const auto count = static_cast<int>(codes.size());
   if (index < count)
     return start_at(problem, codes[static_cast<std::size_t>(index)], start_noise, random);
-
-  const int highest = highest_useful_frequency(problem);
-  const int high = 2 + index - count;  // every frequency once, then random starts
-  const int kind = (high - highest - 1) % 4, cycle = (high - highest - 1) / 4;
-  if (high > highest && kind == 1 && count > 0) {
+  index -= count;
+  if (index < std::ssize(mixtures)) {
+    OptimizeStart start = mixtures[static_cast<std::size_t>(index)];
+    add_noise(start.parameters, start_noise, random);
+    return start;
+  }
+  index -= static_cast<int>(std::ssize(mixtures));
+  const int kind = index % 4, cycle = index / 4;
+  if (kind == 1 && count > 0) {
     OptimizeStart start =
         start_at(problem, codes[static_cast<std::size_t>(cycle % count)], rough_noise, random);
     start.name += " with noise";
@@ -222,18 +282,15 @@ OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeS
   }
   SampledCode code;
   std::string name;
-  if (high <= highest) {
-    name = fmt::format("frequencies 1 and {}", high);
-    code = mixture_of_frequencies(problem, high, random);
-  } else if (kind != 3) {
-    name = fmt::format("mixture of frequencies {}", 3 * cycle + kind + 1);
-    code = mixture_of_frequencies(problem, 0, random);
+  if (kind != 3) {
+    name = fmt::format("random frequencies {}", 3 * cycle + kind + 1);
+    code = random_mixture(problem, random);
   } else {
     const bool random_light = cycle % 2 == 1;
     name = random_light ? "random gates, random light" : "random gates, one pulse";
     code = random_gates(problem, random_light, random);
   }
-  OptimizeStart start{name, parameters_near(space, code, start_scale)};
+  OptimizeStart start{name, parameters_near(problem.space, code, start_scale)};
   add_noise(start.parameters, start_noise, random);
   return start;
 }

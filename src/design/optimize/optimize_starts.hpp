@@ -17,19 +17,24 @@ struct OptimizeStart {
   WaveformParameters parameters;
 };
 
+/// Returns pulses and square gates of frequency 1 in the first exposures, so that depth is unique,
+/// and of one or two higher frequencies in the others.
+std::vector<OptimizeStart> frequency_mixtures(const DesignProblem& problem);
+
+/// Returns those of `also` that fit the space, and code families.
+std::vector<CodeSet> fitting_codes(const WaveformSpace& space, std::span<const CodeSet> also);
+
 /// Returns start `index` of an endless list:
-///   - given codes and families that fit the space,
-///   - frequency 1 with each higher useful frequency,
-///   - in turn: random mixtures of frequencies, given codes and families with noise, and random
-///     smooth gates, with one pulse or with random light.
-OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> also, int index,
+///   - `codes`, then `mixtures`,
+///   - in turn: random mixtures of frequencies, `codes` with noise, and random smooth gates, with
+///     one pulse or with random light.
+OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> codes,
+                             std::span<const OptimizeStart> mixtures, int index,
                              RandomStream& random);
 
 /// Random pair of parameters (cells, 1) and (cells, columns).
 WaveformParameters random_pair(const DesignProblem& problem, RandomStream& random);
 
 SampledCode sampled_on(const WaveformSpace& space, const CodeSet& code);
-
-bool fits_space(const WaveformSpace& space, const CodeSet& code);
 
 }  // namespace tofsmith
