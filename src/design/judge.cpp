@@ -131,13 +131,25 @@ void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& op
   if (result.candidates.empty()) require(why_no_candidate(camera, options, result.left_out));
 }
 
-void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
-               CameraBounds& bounds, const Progress& progress) {
-  choose_exposure_order(camera, candidate);
+EvaluateOptions judging_options(const DesignOptions& options) {
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed;
   judging.outlier_threshold_m = options.outlier_threshold_m;
+  return judging;
+}
+
+void evaluate_candidate(Candidate& candidate, const Camera& camera, const EvaluateOptions& judging,
+                        CameraBounds& bounds, const Progress& progress) {
+  candidate.error = evaluate(candidate.code, camera, judging, bounds, progress);
+  candidate.code.provenance.depth_error_m =
+      geometric_mean_error_m(candidate.error, camera.operating.measure());
+}
+
+void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
+               CameraBounds& bounds, const Progress& progress) {
+  choose_exposure_order(camera, candidate);
+  const EvaluateOptions judging = judging_options(options);
   const auto& later = camera.operating.multipath;
   const bool has_others = camera.operating.interference.has_value();
   const ProgressParts parts(progress,
@@ -149,14 +161,44 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
     candidate.code = candidate.code.rotated(moved_bin);
     candidate.rotation_bin = (candidate.rotation_bin + moved_bin) % camera.samples;
   }
-  candidate.error = evaluate(candidate.code, camera, judging, bounds, parts[1]);
+  evaluate_candidate(candidate, camera, judging, bounds, parts[1]);
   if (later)
     candidate.multipath =
         operating_multipath_report(candidate.code, camera, *later, judging, parts[2]);
   if (has_others)
     candidate.interference = interference_error(candidate.code, camera, judging, parts[3]);
-  candidate.code.provenance.depth_error_m =
-      geometric_mean_error_m(candidate.error, camera.operating.measure());
+}
+
+/// Evaluates codes again, with more trials, if their errors do not differ significantly from the
+/// smallest. Linear errors have standard errors of some percent, more than designs differ.
+void judge_contenders(const Camera& camera, const DesignOptions& options, CameraBounds& bounds,
+                      std::vector<Candidate>& candidates, const Progress& progress) {
+  constexpr double significant = 2.0;  // standard errors of the difference
+  if (options.robust || camera.operating.multipath || camera.operating.interference) return;
+  const auto error_of = [&](const Candidate& candidate) {
+    return candidate.error.of(camera.operating.measure()).geometric_mean_m;
+  };
+  const ProgressParts rounds(progress, {30, 70});
+  std::size_t round = 0;
+  for (const int more : {3, 12}) {
+    const Estimate least = error_of(*std::min_element(
+        candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+          return error_of(a).value < error_of(b).value;
+        }));
+    std::vector<Candidate*> contenders;
+    for (Candidate& candidate : candidates) {
+      const Estimate its = error_of(candidate);
+      if (its.value - least.value <=
+          significant * std::hypot(its.standard_error, least.standard_error))
+        contenders.push_back(&candidate);
+    }
+    if (contenders.size() < 2) return;
+    EvaluateOptions judging = judging_options(options);
+    judging.trials *= more;
+    const ProgressParts parts(rounds[round++], contenders.size());
+    for (std::size_t i = 0; i < contenders.size(); ++i)
+      evaluate_candidate(*contenders[i], camera, judging, bounds, parts[i]);
+  }
 }
 
 void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOptions& options,
@@ -248,18 +290,19 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
                       const Progress& progress) {
   leave_out_what_tells_no_depth(camera, options, result);
   CameraBounds bounds(camera);
-  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});
+  const ProgressParts parts(progress, {60, 30, options.robust ? 0.0 : 10.0});
   const ProgressParts of_candidates(parts[0], result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});
     judge_one(result.candidates[i], camera, options, bounds, its[0]);
     if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
   }
+  judge_contenders(camera, options, bounds, result.candidates, parts[1]);
   std::vector<int> requested;  // any, for rows: DesignOptions::exposures is their number
   if (camera.sensor.readout != Readout::rows) requested = options.exposures;
   keep_best_of_each_name(ranking_of(result.candidates, camera, options), requested, result);
   Candidate& winner = result.candidates[result.best];
-  if (!winner.robustness) judge_robustness(winner, camera, options, parts[1]);
+  if (!winner.robustness) judge_robustness(winner, camera, options, parts[2]);
   result.explanation = explain(camera, result, requested);
 }
 

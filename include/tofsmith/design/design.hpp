@@ -102,7 +102,8 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
       Field("search_trials", o.search_trials, at_least(100),
             Help{"trials per operating point while factorized waveforms or rows are selected"}),
       Field("trials", o.trials, closed(1000, 1e8),
-            Help{"trials per operating point of the final evaluation"}),
+            Help{"trials per operating point of the final evaluation; codes that it cannot "
+                 "distinguish from the best are evaluated again with up to 12 times as many"}),
       Field("outlier_threshold_m", o.outlier_threshold_m, at_least(0).or_infinity(),
             outlier_threshold_help),
       Field("seed", o.seed, Help{"seed of every random choice"}));
@@ -145,8 +146,8 @@ struct DesignStore {
 std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result,
                                                       DepthErrorMeasure measure);
 
-/// Ratio of another candidate's geometric_mean_error_m() to the winner's, from the same trials. The
-/// standard error ignores their correlation and is an overestimate.
+/// Ratio of another candidate's geometric_mean_error_m() to the winner's. The standard error
+/// ignores the correlation of common trials and is an overestimate.
 Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorMeasure measure);
 
 /// Returns fewer exposures with more taps, and more with larger bandwidth.
