@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -169,35 +170,55 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
     candidate.interference = interference_error(candidate.code, camera, judging, parts[3]);
 }
 
+/// Returns the candidates with a requested number of exposures, or all if there are none.
+std::vector<Candidate*> possible_winners(std::vector<Candidate>& candidates,
+                                         const std::vector<int>& requested) {
+  std::vector<Candidate*> all, possible;
+  for (Candidate& candidate : candidates) {
+    all.push_back(&candidate);
+    if (requested.empty() || std::find(requested.begin(), requested.end(),
+                                       candidate.code.exposures()) != requested.end())
+      possible.push_back(&candidate);
+  }
+  return possible.empty() ? all : possible;
+}
+
+/// False if another criterion than the error without disturbances ranks the codes.
+bool ranks_by_error(const Camera& camera, const DesignOptions& options) {
+  return !options.robust && !camera.operating.multipath && !camera.operating.interference;
+}
+
 /// Evaluates codes again, with more trials, if their errors do not differ significantly from the
 /// smallest. Linear errors have standard errors of some percent, more than designs differ.
 void judge_contenders(const Camera& camera, const DesignOptions& options, CameraBounds& bounds,
-                      std::vector<Candidate>& candidates, const Progress& progress) {
+                      const std::vector<Candidate*>& possible, const Progress& progress) {
   constexpr double significant = 2.0;  // standard errors of the difference
-  if (options.robust || camera.operating.multipath || camera.operating.interference) return;
-  const auto error_of = [&](const Candidate& candidate) {
-    return candidate.error.of(camera.operating.measure()).geometric_mean_m;
+  // In the last round, codes that were not close before may be.
+  const std::vector<int> trial_factors = {3, 12, 12};
+  const ProgressParts rounds(progress, {20, 60, 20});
+  const auto error_of = [&](const Candidate* candidate) {
+    return candidate->error.of(camera.operating.measure()).geometric_mean_m;
   };
-  const ProgressParts rounds(progress, {30, 70});
-  std::size_t round = 0;
-  for (const int more : {3, 12}) {
-    const Estimate least = error_of(*std::min_element(
-        candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
-          return error_of(a).value < error_of(b).value;
-        }));
-    std::vector<Candidate*> contenders;
-    for (Candidate& candidate : candidates) {
-      const Estimate its = error_of(candidate);
-      if (its.value - least.value <=
-          significant * std::hypot(its.standard_error, least.standard_error))
-        contenders.push_back(&candidate);
-    }
-    if (contenders.size() < 2) return;
+  for (std::size_t round = 0; round < trial_factors.size(); ++round) {
     EvaluateOptions judging = judging_options(options);
-    judging.trials *= more;
-    const ProgressParts parts(rounds[round++], contenders.size());
-    for (std::size_t i = 0; i < contenders.size(); ++i)
-      evaluate_candidate(*contenders[i], camera, judging, bounds, parts[i]);
+    judging.trials *= trial_factors[round];
+    Estimate least{std::numeric_limits<double>::infinity(), 0.0};
+    for (const Candidate* candidate : possible)
+      if (error_of(candidate).value < least.value) least = error_of(candidate);
+    std::vector<Candidate*> close;
+    std::copy_if(possible.begin(), possible.end(), std::back_inserter(close),
+                 [&](const Candidate* candidate) {
+                   const Estimate error = error_of(candidate);
+                   return error.value - least.value <=
+                          significant * std::hypot(error.standard_error, least.standard_error);
+                 });
+    if (close.size() < 2) return;
+    std::erase_if(close, [&](const Candidate* candidate) {
+      return candidate->error.trials >= judging.trials;
+    });
+    const ProgressParts parts(rounds[round], close.size());
+    for (std::size_t i = 0; i < close.size(); ++i)
+      evaluate_candidate(*close[i], camera, judging, bounds, parts[i]);
   }
 }
 
@@ -222,7 +243,7 @@ std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const C
 
 /// Keeps the best candidate of each name, then finds the winner, with a requested number of
 /// exposures if possible.
-void keep_best_of_each_name(const std::vector<double>& ranking_m, const std::vector<int>& exposures,
+void keep_best_of_each_name(const std::vector<double>& ranking_m, const std::vector<int>& requested,
                             DesignResult& result) {
   std::vector<Candidate> kept;
   std::vector<double> kept_m;
@@ -241,18 +262,14 @@ void keep_best_of_each_name(const std::vector<double>& ranking_m, const std::vec
     }
   }
   result.candidates = std::move(kept);
-  const auto is_requested = [&](const Candidate& c) {
-    return exposures.empty() ||
-           std::find(exposures.begin(), exposures.end(), c.code.exposures()) != exposures.end();
+  const auto index = [&](const Candidate* c) {
+    return static_cast<std::size_t>(c - result.candidates.data());
   };
-  const bool any_requested =
-      std::any_of(result.candidates.begin(), result.candidates.end(), is_requested);
-  std::size_t best = result.candidates.size();
-  for (std::size_t i = 0; i < kept_m.size(); ++i)
-    if ((!any_requested || is_requested(result.candidates[i])) &&
-        (best == kept_m.size() || kept_m[i] < kept_m[best]))
-      best = i;
-  result.best = best < kept_m.size() ? best : 0;
+  const std::vector<Candidate*> possible = possible_winners(result.candidates, requested);
+  const auto best = std::min_element(
+      possible.begin(), possible.end(),
+      [&](const Candidate* a, const Candidate* b) { return kept_m[index(a)] < kept_m[index(b)]; });
+  result.best = best == possible.end() ? 0 : index(*best);
 }
 
 }  // namespace
@@ -290,16 +307,20 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
                       const Progress& progress) {
   leave_out_what_tells_no_depth(camera, options, result);
   CameraBounds bounds(camera);
-  const ProgressParts parts(progress, {60, 30, options.robust ? 0.0 : 10.0});
+  const bool has_contenders = ranks_by_error(camera, options);
+  const ProgressParts parts(progress,
+                            {60, has_contenders ? 30.0 : 0.0, options.robust ? 0.0 : 10.0});
   const ProgressParts of_candidates(parts[0], result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});
     judge_one(result.candidates[i], camera, options, bounds, its[0]);
     if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
   }
-  judge_contenders(camera, options, bounds, result.candidates, parts[1]);
   std::vector<int> requested;  // any, for rows: DesignOptions::exposures is their number
   if (camera.sensor.readout != Readout::rows) requested = options.exposures;
+  if (has_contenders)
+    judge_contenders(camera, options, bounds, possible_winners(result.candidates, requested),
+                     parts[1]);
   keep_best_of_each_name(ranking_of(result.candidates, camera, options), requested, result);
   Candidate& winner = result.candidates[result.best];
   if (!winner.robustness) judge_robustness(winner, camera, options, parts[2]);

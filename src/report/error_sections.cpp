@@ -87,17 +87,23 @@ std::vector<std::size_t> by_error(std::span<const DepthErrorRow> codes, DepthErr
 Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> codes,
                        const std::vector<std::size_t>& order, std::size_t best) {
   const DepthErrorReport& first = *codes[0].error;
+  std::int64_t min_trials = first.trials, max_trials = first.trials;
+  for (const DepthErrorRow& code : codes) {
+    min_trials = std::min(min_trials, code.error->trials);
+    max_trials = std::max(max_trials, code.error->trials);
+  }
   Table table{
       .id = "comparison",
       .caption = fmt::format(
           "Errors are geometric means over {} operating points; the column arithmetic "
-          "contains the arithmetic mean of the circular error. Each operating point has {} "
+          "contains the arithmetic mean of the circular error. Each operating point has {}{} "
           "trials with N = {} samples per period and true depths {}; ± is one "
           "standard error. Taps are the values that are read out per exposure. Errors are mean "
           "absolute errors; rms columns contain root mean square errors, in which rare "
           "large errors dominate. Outliers are circular errors above {:.2g} m.",
-          first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
-          first.outlier_threshold_m),
+          first.points.size(), min_trials,
+          max_trials > min_trials ? fmt::format(" to {}", max_trials) : "", camera.samples,
+          true_depths_in_words(camera), first.outlier_threshold_m),
       .columns = {{"code"},
                   {"made by"},
                   {exposures_by_taps_title, true},

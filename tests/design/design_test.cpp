@@ -83,12 +83,12 @@ TEST(Design, ATargetWithoutDepthInformationIsExcludedWithAReason) {
   EXPECT_NE(result.left_out[0].find("rank"), std::string::npos) << result.left_out[0];
 }
 
-TEST(Design, ErrorEqualsThatOfEvaluateWithTheSameSeed) {
+TEST(Design, ErrorEqualsThatOfEvaluateWithTheSameSeedAndTrials) {
   const Camera camera = coarse_camera("paper-5f0");
   const DesignOptions options = small_options();
   const Candidate winner = design(camera, options).winner();
   const DepthErrorReport again =
-      evaluate(winner.code, camera, {.trials = options.trials, .seed = options.seed});
+      evaluate(winner.code, camera, {.trials = winner.error.trials, .seed = options.seed});
   EXPECT_EQ(again.linear.geometric_mean_m.value, winner.error.linear.geometric_mean_m.value);
   EXPECT_EQ(again.seed, winner.error.seed);
 }

@@ -258,14 +258,18 @@ double amplitude_of_frequency_1(const Eigen::VectorXd& samples) {
   return std::abs(sum) / static_cast<double>(samples.size());
 }
 
+DesignProblem problem_for(int taps, int exposures) {
+  Camera camera = small_camera();
+  camera.sensor.taps = taps;
+  return make_design_problem(std::span(&camera, 1), exposures, 48);
+}
+
 TEST(FrequencyMixtures, BeginWithFrequency1EndWithAHigherOneAndDiffer) {
   for (const int taps : {1, 2, 3, 4})
     for (const int exposures : {3, 5, 8}) {
-      Camera camera = small_camera();
-      camera.sensor.taps = taps;
-      const DesignProblem problem = make_design_problem(std::span(&camera, 1), exposures, 48);
+      const DesignProblem problem = problem_for(taps, exposures);
       const std::vector<OptimizeStart> mixtures = frequency_mixtures(problem);
-      EXPECT_GE(mixtures.size(), 9u) << taps << " taps, " << exposures << " exposures";
+      ASSERT_FALSE(mixtures.empty());
       for (auto it = mixtures.begin(); it != mixtures.end(); ++it) {
         const Eigen::MatrixXd light = render(problem.space, it->parameters, {6.0, 8.0}).modulation;
         EXPECT_GT(amplitude_of_frequency_1(light.col(0)), 0.5) << it->name;
@@ -276,6 +280,22 @@ TEST(FrequencyMixtures, BeginWithFrequency1EndWithAHigherOneAndDiffer) {
               << it->name << ", " << other->name;
       }
     }
+  EXPECT_TRUE(frequency_mixtures(problem_for(2, 2)).empty());
+}
+
+TEST(FrequencyMixtures, TheBestAreOfDifferentFrequenciesAndNestedForAnyNumber) {
+  const DesignProblem problem = problem_for(2, 5);
+  const std::vector<OptimizeStart> many = best_mixtures(problem, 12, 1);
+  ASSERT_EQ(many.size(), 12u);
+  for (std::size_t i = 0; i < many.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(many[i].name, many[j].name);
+  const std::vector<OptimizeStart> few = best_mixtures(problem, 3, 1);
+  ASSERT_EQ(few.size(), 3u);
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    EXPECT_EQ(few[i].name, many[i].name);
+    EXPECT_EQ(few[i].parameters.demodulation, many[i].parameters.demodulation);
+  }
+  EXPECT_TRUE(best_mixtures(problem, -1, 1).empty());
 }
 
 TEST(BestOfStarts, TakesTheFirstEntriesOfEveryStart) {

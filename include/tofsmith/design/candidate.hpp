@@ -76,9 +76,10 @@ struct Candidate {
   CodeSet code;
   /// "family", "naive", "reference", "atlas", "factorize", "optimize", "search" or "frequencies".
   std::string method;
-  DepthErrorReport error;  ///< by evaluate() with the seed and trials of DesignOptions
-  int rotation_bin = 0;    ///< of the origin of depth
-  int iterations = 0;      ///< convex or gradient steps, over all starts
+  DepthErrorReport
+      error;  ///< by evaluate(), with the seed and up to 12 times the trials of DesignOptions
+  int rotation_bin = 0;  ///< of the origin of depth
+  int iterations = 0;    ///< convex or gradient steps, over all starts
   double seconds = 0.0;
   Eigen::MatrixXd target;                          ///< of the factorization (N, K); else empty
   std::vector<MeasurementReport> per_measurement;  ///< per demodulation; empty unless designed

@@ -85,7 +85,7 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
 ///
 /// For analog arms, the result includes the codes of a search for binary arms; from twice the
 /// default effort on (with_effort()), also of a search of half the effort. More freedom or effort
-/// thus never gives a worse code.
+/// thus loses no code.
 /// @param exposures  1 to 8, with at least 3 measurements (2 differences)
 /// @param also  starts, if they have the same number of exposures
 /// @return feasible codes named "optimized-k<exposures>" for judge(), which computes their errors:

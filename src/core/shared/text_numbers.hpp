@@ -21,7 +21,7 @@ std::optional<double> take_number(std::string_view& text);
 /// Parses all of `text`, which may begin with a plus sign.
 std::optional<double> number_in(std::string_view text);
 
-/// Without surrounding blanks and line ends.
+/// Removes blanks and line ends at the beginning and the end.
 std::string_view trimmed(std::string_view text);
 
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -56,8 +56,7 @@ std::vector<PoolEntry> entries_to_finish(const DesignProblem& problem, const Opt
   return chosen;
 }
 
-/// Twice the effort repeats all of the default search first, so more effort never gives a worse
-/// code.
+/// Twice the effort repeats all of the default search first, so that it does not lose its code.
 std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
   constexpr int starts_per_refined = 6;
   const OptimizeOptions usual;
@@ -94,13 +93,6 @@ struct FinishedCode {
   std::string start;
 };
 
-Sharpness final_sharpness(const DesignProblem& problem) {
-  Sharpness sharpness{6.0, 8.0};
-  if (!problem.binary_modulation) sharpness.modulation = 1.0;
-  if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
-  return sharpness;
-}
-
 /// @param key     of the random numbers
 /// @param before  number of codes from earlier stages, for random numbers
 std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
@@ -130,8 +122,8 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const Cod
 }
 
 /// Returns the best code or, with operating multipath or interference, all of them, because the
-/// optimized error does not contain the whole ranking criterion. Otherwise, judge() would choose by
-/// chance, because its standard error of linear errors exceeds the differences.
+/// optimized error does not contain the whole ranking criterion. Otherwise, judge() would need many
+/// more trials to distinguish them.
 std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool& pool,
                                      const Camera& camera, const OptimizeOptions& options,
                                      std::vector<FinishedCode> finished) {
@@ -173,7 +165,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
 
   // Each stage descends from many codes, from copies of the best codes, and again from the best
   // codes, which become feasible.
-  OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
+  OptimizePool pool(problem, options, also, camera.range_m() / problem.space.samples());
   const CodeJudge judge = final_judge(problem, options);
   const std::vector<PoolStage> stages = stages_of(options);
   std::vector<double> weights;
@@ -184,7 +176,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   const double splitting = times == ExposureTimes::free ? 40.0 : 0.0;
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const ProgressParts parts(of_stages[s], {40, 35, 10, 15, 0.6 * splitting, 0.4 * splitting});
-    pool.run_starts(stages[s], also, parts[0]);
+    pool.run_starts(stages[s], parts[0]);
     pool.run_hops(stages[s], parts[1]);
     pool.refine(stages[s], parts[2]);
     std::vector<PoolEntry> entries =

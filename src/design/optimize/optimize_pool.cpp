@@ -328,15 +328,48 @@ PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
   return next;
 }
 
+Sharpness final_sharpness(const DesignProblem& problem) {
+  Sharpness sharpness = DescentSchedule().final_sharpness;
+  if (!problem.binary_modulation) sharpness.modulation = 1.0;
+  if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
+  return sharpness;
+}
+
+std::vector<OptimizeStart> best_mixtures(const DesignProblem& problem, std::ptrdiff_t count,
+                                         std::uint64_t seed, const Progress& progress) {
+  constexpr int trials = 200;  // per light level
+  if (count <= 0) return {};
+  std::vector<OptimizeStart> all = frequency_mixtures(problem);
+  const CodeJudge judge(problem, trials, seed, work_item(Phase::judging, 2));
+  std::vector<std::pair<double, std::size_t>> ranked(all.size());
+  SharedProgress shared(progress, static_cast<double>(all.size()), "mixtures of frequencies");
+  parallel_for(std::ssize(all), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    shared.add();
+    const SampledCode code = render(problem.space, all[at].parameters, final_sharpness(problem));
+    ranked[at] = {judge.score(code).log_error_bin, at};
+  });
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<OptimizeStart> best;
+  for (const auto& [log_error, i] : ranked) {
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const OptimizeStart& better) {
+      return better.name == all[i].name;
+    });
+    if (is_new && std::ssize(best) < count) best.push_back(std::move(all[i]));
+  }
+  return best;
+}
+
 OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& options,
-                           double bin_m)
+                           std::span<const CodeSet> also, double bin_m)
     : problem_(&problem),
       options_(options),
       bin_m_(bin_m),
       quick_judge_(problem, trials_per_level(problem, options) / 4, options.seed,
                    work_item(Phase::judging, 1)),
       judge_(problem, trials_per_level(problem, options), options.seed,
-             work_item(Phase::judging, 0)) {}
+             work_item(Phase::judging, 0)),
+      codes_(fitting_codes(problem.space, also)) {}
 
 void OptimizePool::record(double log_error_bin) {
   const double error_m = std::exp(log_error_bin) * bin_m_;
@@ -352,8 +385,7 @@ void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, doubl
   schedule.steps = steps;
   schedule.rate = rate;
   schedule.trials_per_step = options_.trials_per_step;
-  if (!problem_->binary_modulation) schedule.final_sharpness.modulation = 1.0;
-  if (!problem_->binary_demodulation) schedule.final_sharpness.demodulation = 1.0;
+  schedule.final_sharpness = final_sharpness(*problem_);
   const double contending =
       entries_.empty() ? infinity : entries_.front().score.log_error_bin + contending_log_ratio;
   parallel_for(std::ssize(entries), [&](std::int64_t i) {
@@ -380,39 +412,15 @@ void OptimizePool::keep(std::vector<PoolEntry> entries) {
   if (entries_.size() > max_pool) entries_.resize(max_pool);
 }
 
-std::vector<OptimizeStart> OptimizePool::best_mixtures(std::ptrdiff_t count) const {
-  constexpr int trials = 200;  // per light level
-  if (count <= 0) return {};
-  std::vector<OptimizeStart> all = frequency_mixtures(*problem_);
-  const CodeJudge judge(*problem_, trials, options_.seed, work_item(Phase::judging, 2));
-  std::vector<std::pair<double, std::size_t>> ranked(all.size());
-  parallel_for(std::ssize(all), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
-    const SampledCode code =
-        render(problem_->space, all[at].parameters, DescentSchedule().final_sharpness);
-    ranked[at] = {judge.score(code).log_error_bin, at};
-  });
-  std::sort(ranked.begin(), ranked.end());
-  std::vector<OptimizeStart> best;
-  for (const auto& [log_error, i] : ranked) {
-    const bool is_new = std::none_of(best.begin(), best.end(), [&](const OptimizeStart& better) {
-      return better.name == all[i].name;
-    });
-    if (is_new && std::ssize(best) < count) best.push_back(std::move(all[i]));
-  }
-  return best;
-}
-
-void OptimizePool::run_starts(const PoolStage& stage, std::span<const CodeSet> also,
-                              const Progress& progress) {
+void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) {
+  constexpr std::ptrdiff_t max_mixtures = 16;
   const auto count = static_cast<std::size_t>(stage.starts);
-  if (starts_done_ == 0) {
-    constexpr std::ptrdiff_t max_mixtures = 16;
-    codes_ = fitting_codes(problem_->space, also);
-    mixtures_ = best_mixtures(std::min(max_mixtures, stage.starts - std::ssize(codes_)));
-  }
+  const ProgressParts parts(progress, {starts_done_ == 0 ? 10.0 : 0.0, 90});
+  if (starts_done_ == 0)
+    mixtures_ = best_mixtures(*problem_, std::min(max_mixtures, stage.starts - std::ssize(codes_)),
+                              options_.seed, parts[0]);
   SharedProgress shared(
-      progress, static_cast<double>(count - starts_done_) * options_.steps_per_start, "starts");
+      parts[1], static_cast<double>(count - starts_done_) * options_.steps_per_start, "starts");
   for (std::size_t first = starts_done_; first < count; first += together) {
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + together); ++i) {

@@ -73,6 +73,13 @@ WaveformParameters descend(const DesignProblem& problem, WaveformParameters para
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item, SharedProgress* progress = nullptr);
 
+/// Of rendered waveforms at the end of descents; 1 for arms that are not binary.
+Sharpness final_sharpness(const DesignProblem& problem);
+
+/// Returns up to `count` mixtures of different frequencies with the smallest errors, best first.
+std::vector<OptimizeStart> best_mixtures(const DesignProblem& problem, std::ptrdiff_t count,
+                                         std::uint64_t seed, const Progress& progress = {});
+
 struct PoolEntry {
   WaveformParameters parameters;
   CodeScore score;
@@ -107,9 +114,11 @@ struct PoolStage {
 /// Codes from descents, best first, with the history of the search.
 class OptimizePool {
  public:
-  OptimizePool(const DesignProblem& problem, const OptimizeOptions& options, double bin_m);
+  /// @param also  starts, if they fit the space
+  OptimizePool(const DesignProblem& problem, const OptimizeOptions& options,
+               std::span<const CodeSet> also, double bin_m);
 
-  void run_starts(const PoolStage& stage, std::span<const CodeSet> also, const Progress& progress);
+  void run_starts(const PoolStage& stage, const Progress& progress);
   /// Descends from the best entries and then from perturbed copies, until hops or patience are used
   /// up.
   void run_hops(const PoolStage& stage, const Progress& progress);
@@ -130,8 +139,6 @@ class OptimizePool {
   void descend_all(std::vector<PoolEntry>& entries, int steps, double rate, std::uint64_t phase,
                    std::size_t first_item, SharedProgress& progress) const;
   void keep(std::vector<PoolEntry> entries);
-  /// Returns up to `count` mixtures of different frequencies with the smallest errors, best first.
-  std::vector<OptimizeStart> best_mixtures(std::ptrdiff_t count) const;
 
   const DesignProblem* problem_;
   OptimizeOptions options_;

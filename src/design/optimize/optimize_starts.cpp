@@ -125,39 +125,38 @@ OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double
   return start;
 }
 
-/// Frequencies and phases [turns] of the exposures.
-struct ExposureTones {
-  std::vector<int> frequency;
-  std::vector<double> phase;
+struct ExposureTone {
+  int frequency;
+  double phase_turns;
 };
 
-/// Adds exposures of one frequency with evenly spaced phases.
-void add_exposures(ExposureTones& tones, int frequency, int exposures, double spread,
-                   double first_phase = 0.0) {
-  for (int e = 0; e < exposures; ++e) {
-    tones.frequency.push_back(frequency);
-    tones.phase.push_back(first_phase + (exposures == 2 ? 0.25 * e : e * spread / exposures));
-  }
+/// Adds exposures of one frequency: two in quadrature, otherwise with evenly spaced phases.
+void add_tones(std::vector<ExposureTone>& tones, int frequency, int count, double spread_turns,
+               double first_phase_turns = 0.0) {
+  for (int e = 0; e < count; ++e)
+    tones.push_back(
+        {frequency, first_phase_turns + e * (count == 2 ? 0.25 : spread_turns / count)});
 }
 
 double spread_of_phases(const WaveformSpace& space) {
   return space.taps >= 2 ? 0.5 : 1.0;  // buckets add the opposite phase
 }
 
-/// Exposures of frequency 1 that measure depth alone.
+/// Exposures of frequency 1 that measure depth, signal and ambient light without others.
 int exposures_for_depth(const WaveformSpace& space) {
   if (space.taps > 2) return 1;
   if (space.taps == 2) return 2;
   return space.exposures >= 4 ? 3 : 2;
 }
 
-SampledCode mixture_of_frequencies(const WaveformSpace& space, const ExposureTones& tones) {
+SampledCode mixture_of_frequencies(const WaveformSpace& space,
+                                   std::span<const ExposureTone> tones) {
   SampledCode code = empty_code(space);
   const double duty = std::max(1.0 / space.peak_factor, space.taps > 2 ? 0.5 / space.taps : 0.2);
   for (int e = 0; e < space.exposures; ++e) {
-    const auto i = static_cast<std::size_t>(e);
-    write_pulses(space, tones.frequency[i], duty, e, code);
-    write_turns(space, tones.frequency[i], tones.phase[i], e, code);
+    const ExposureTone& tone = tones[static_cast<std::size_t>(e)];
+    write_pulses(space, tone.frequency, duty, e, code);
+    write_turns(space, tone.frequency, tone.phase_turns, e, code);
   }
   return code;
 }
@@ -167,12 +166,12 @@ SampledCode mixture_of_frequencies(const WaveformSpace& space, const ExposureTon
 SampledCode random_mixture(const DesignProblem& problem, RandomStream& random) {
   const WaveformSpace& space = problem.space;
   const int highest = highest_useful_frequency(problem);
-  ExposureTones tones;
-  add_exposures(tones, 1, std::min(space.exposures, exposures_for_depth(space)),
-                spread_of_phases(space));
-  while (std::ssize(tones.frequency) < space.exposures) {
-    tones.frequency.push_back(2 + static_cast<int>(random.uniform() * std::max(1, highest - 1)));
-    tones.phase.push_back(random.uniform());
+  std::vector<ExposureTone> tones;
+  add_tones(tones, 1, std::min(space.exposures, exposures_for_depth(space)),
+            spread_of_phases(space));
+  while (std::ssize(tones) < space.exposures) {
+    const int frequency = 2 + static_cast<int>(random.uniform() * std::max(1, highest - 1));
+    tones.push_back({frequency, random.uniform()});
   }
   return mixture_of_frequencies(space, tones);
 }
@@ -225,27 +224,34 @@ std::vector<OptimizeStart> frequency_mixtures(const DesignProblem& problem) {
   constexpr int max_middle = 4;
   const WaveformSpace& space = problem.space;
   const int highest = highest_useful_frequency(problem);
-  const int least = space.taps > 2 ? 1 : 2, most = exposures_for_depth(space) + 1;
+  const double spread = spread_of_phases(space);
   std::vector<OptimizeStart> starts;
-  const auto add = [&](int first, int middle, int of_middle, double middle_phase, int high) {
-    const double spread = spread_of_phases(space);
-    ExposureTones tones;
-    add_exposures(tones, 1, first, spread);
-    add_exposures(tones, middle, of_middle, spread, middle_phase);
-    add_exposures(tones, high, space.exposures - first - of_middle, spread);
-    starts.push_back({of_middle > 0 ? fmt::format("frequencies 1, {} and {}", middle, high)
-                                    : fmt::format("frequencies 1 and {}", high),
-                      parameters_near(space, mixture_of_frequencies(space, tones), start_scale)});
+  const auto add = [&](const std::string& name, std::vector<ExposureTone> tones, int high) {
+    add_tones(tones, high, space.exposures - static_cast<int>(std::ssize(tones)), spread);
+    starts.push_back(
+        {name, parameters_near(space, mixture_of_frequencies(space, tones), start_scale)});
   };
-  for (int first = least; first <= std::min(most, space.exposures - 1); ++first)
+  // One tap also measures depth with two exposures of frequency 1 and the others.
+  const int min_lowest = std::min(2, exposures_for_depth(space));
+  const int max_lowest = std::min(exposures_for_depth(space) + 1, space.exposures - 1);
+  for (int count = min_lowest; count <= max_lowest; ++count) {
+    std::vector<ExposureTone> lowest;
+    add_tones(lowest, 1, count, spread);
     for (int high = 2; high <= highest; ++high) {
-      add(first, 1, 0, 0.0, high);
-      const int others = space.exposures - first;
-      for (int middle = 2; others > 1 && middle < std::min(high, max_middle + 1); ++middle) {
-        for (const double phase : {0.0, 0.25}) add(first, middle, 1, phase, high);
-        if (others > 2) add(first, middle, 2, 0.0, high);
+      add(fmt::format("frequencies 1 and {}", high), lowest, high);
+      for (int middle = 2; middle < std::min(high, max_middle + 1); ++middle) {
+        const auto add_with_middle = [&](int middle_count, double first_phase_turns) {
+          if (count + middle_count >= space.exposures) return;
+          std::vector<ExposureTone> tones = lowest;
+          add_tones(tones, middle, middle_count, spread, first_phase_turns);
+          add(fmt::format("frequencies 1, {} and {}", middle, high), std::move(tones), high);
+        };
+        add_with_middle(1, 0.0);
+        add_with_middle(1, 0.25);
+        add_with_middle(2, 0.0);
       }
     }
+  }
   return starts;
 }
 

@@ -17,15 +17,15 @@ struct OptimizeStart {
   WaveformParameters parameters;
 };
 
-/// Returns pulses and square gates of frequency 1 in the first exposures, so that depth is unique,
-/// and of one or two higher frequencies in the others.
+/// Returns codes of pulses and square gates of frequency 1 in the first exposures and of one or two
+/// higher frequencies in the others. None if all exposures are needed for frequency 1.
 std::vector<OptimizeStart> frequency_mixtures(const DesignProblem& problem);
 
 /// Returns those of `also` that fit the space, and code families.
 std::vector<CodeSet> fitting_codes(const WaveformSpace& space, std::span<const CodeSet> also);
 
 /// Returns start `index` of an endless list:
-///   - `codes`, then `mixtures`,
+///   - `codes`, which fit the space, then `mixtures`,
 ///   - in turn: random mixtures of frequencies, `codes` with noise, and random smooth gates, with
 ///     one pulse or with random light.
 OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> codes,

@@ -58,7 +58,9 @@ Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
 
 DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document) {
   auto report = fields_from_json<DepthErrorReport>(entry);
-  report.trials = static_cast<std::int64_t>(document.member("trials").unsigned_integer());
+  const std::optional<JsonReader> own_trials = entry.optional_member("trials");
+  report.trials =
+      static_cast<std::int64_t>(own_trials.value_or(document.member("trials")).unsigned_integer());
   report.seed = document.member("seed").unsigned_integer();
   report.outlier_threshold_m = document.member("outlier_threshold_m").number(0.0, infinity, 0.0);
   for (PointDepthError& point : report.points) point.trials = report.trials;
@@ -148,6 +150,7 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
   document["codes"] = Json::array();
   for (const Candidate& candidate : result.candidates) {
     Json entry = depth_error_json(candidate.error, candidate.rotation_bin);
+    entry["trials"] = candidate.error.trials;
     entry["method"] = candidate.method;
     if (candidate.is_designed()) {
       entry["iterations"] = candidate.iterations;
