@@ -145,7 +145,8 @@ TEST(DesignDocument, AddsTheBestCodeAndComparisons) {
   for (const json& code : document["codes"]) {
     EXPECT_TRUE(names.insert(code["name"]).second) << "a repeated name";
     Keys expected = code_keys;
-    expected.insert({"method", "times_best"});
+    expected.insert({"method", "times_best", "trials"});
+    EXPECT_EQ(code["trials"], result.find(code["name"].get<std::string>())->error.trials);
     if (code["name"] == document["best"]) expected.insert("robustness");
     if (code["method"] == "factorize")
       expected.insert({"iterations", "seconds", "per_measurement"});
