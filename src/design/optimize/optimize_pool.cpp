@@ -351,11 +351,12 @@ std::vector<OptimizeStart> best_mixtures(const DesignProblem& problem, std::ptrd
   });
   std::sort(ranked.begin(), ranked.end());
   std::vector<OptimizeStart> best;
-  for (const auto& [log_error, i] : ranked) {
+  for (const auto& log_error_and_index : ranked) {
+    OptimizeStart& next = all[log_error_and_index.second];
     const bool is_new = std::none_of(best.begin(), best.end(), [&](const OptimizeStart& better) {
-      return better.name == all[i].name;
+      return better.name == next.name;
     });
-    if (is_new && std::ssize(best) < count) best.push_back(std::move(all[i]));
+    if (is_new && std::ssize(best) < count) best.push_back(std::move(next));
   }
   return best;
 }
