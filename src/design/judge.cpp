@@ -193,7 +193,7 @@ bool ranks_by_error(const Camera& camera, const DesignOptions& options) {
 void judge_contenders(const Camera& camera, const DesignOptions& options, CameraBounds& bounds,
                       const std::vector<Candidate*>& possible, const Progress& progress) {
   constexpr double significant = 2.0;  // standard errors of the difference
-  // In the last round, codes that were not close before may be.
+  // The last round evaluates codes that became close to the best in the round before.
   const std::vector<int> trial_factors = {3, 12, 12};
   const ProgressParts rounds(progress, {20, 60, 20});
   const auto error_of = [&](const Candidate* candidate) {

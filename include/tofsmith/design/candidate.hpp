@@ -76,8 +76,8 @@ struct Candidate {
   CodeSet code;
   /// "family", "naive", "reference", "atlas", "factorize", "optimize", "search" or "frequencies".
   std::string method;
-  DepthErrorReport
-      error;  ///< by evaluate(), with the seed and up to 12 times the trials of DesignOptions
+  /// By evaluate(), with the seed and up to 12 times the trials of DesignOptions.
+  DepthErrorReport error;
   int rotation_bin = 0;  ///< of the origin of depth
   int iterations = 0;    ///< convex or gradient steps, over all starts
   double seconds = 0.0;

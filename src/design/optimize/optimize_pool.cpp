@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "design/optimize/depth_error_loss.hpp"
@@ -351,12 +352,10 @@ std::vector<OptimizeStart> best_mixtures(const DesignProblem& problem, std::ptrd
   });
   std::sort(ranked.begin(), ranked.end());
   std::vector<OptimizeStart> best;
+  std::set<std::string> names;
   for (const auto& log_error_and_index : ranked) {
     OptimizeStart& next = all[log_error_and_index.second];
-    const bool is_new = std::none_of(best.begin(), best.end(), [&](const OptimizeStart& better) {
-      return better.name == next.name;
-    });
-    if (is_new && std::ssize(best) < count) best.push_back(std::move(next));
+    if (std::ssize(best) < count && names.insert(next.name).second) best.push_back(std::move(next));
   }
   return best;
 }

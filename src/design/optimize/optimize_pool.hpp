@@ -73,7 +73,7 @@ WaveformParameters descend(const DesignProblem& problem, WaveformParameters para
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item, SharedProgress* progress = nullptr);
 
-/// Of rendered waveforms at the end of descents; 1 for arms that are not binary.
+/// Returns the sharpness of waveforms at the end of descents: 1 for arms that are not binary.
 Sharpness final_sharpness(const DesignProblem& problem);
 
 /// Returns up to `count` mixtures of different frequencies with the smallest errors, best first.

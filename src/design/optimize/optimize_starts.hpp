@@ -21,7 +21,7 @@ struct OptimizeStart {
 /// higher frequencies in the others. None if all exposures are needed for frequency 1.
 std::vector<OptimizeStart> frequency_mixtures(const DesignProblem& problem);
 
-/// Returns those of `also` that fit the space, and code families.
+/// Returns the codes in `also` that fit the space, and code families.
 std::vector<CodeSet> fitting_codes(const WaveformSpace& space, std::span<const CodeSet> also);
 
 /// Returns start `index` of an endless list:
