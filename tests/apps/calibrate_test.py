@@ -15,14 +15,11 @@ class Calibrate(BenchRecordsTest):
         command = ["calibrate", "impulse-response"]
         self.write("a.csv", "4,5\n1,7\n" * 20)
         self.refuse([*command, "a.csv"], "a.csv:1", "--decimal")
-        self.write("b.csv", "t,v\n" + "".join(f"{i}.5,{i}\n" for i in range(30)) + "30.5,nan\n")
-        self.refuse([*command, "b.csv"], "b.csv:32", "nan")
         self.write("c.csv", "".join(f"{i}.5,1.5\n" for i in range(30)))
         self.refuse([*command, "c.csv"], "longer than the camera's period", "--time-unit")
         self.record()
         self.refuse([*command, "scope.csv", "-o", "x.json"], ".toml", code=2)
         self.refuse([*command, "scope.csv", "--report", "scope.csv"], ".html", code=2)
-        self.refuse(["calibrate"], "subcommand", code=2)
         self.refuse(["calibrate", "noise", "--darkk", "x"], "did you mean --dark?", code=2)
 
     def swept(self, *, taps, difference=False, order=(0, 1, 2, 3), sign=1):
@@ -95,7 +92,6 @@ class Calibrate(BenchRecordsTest):
         self.do(*said, "--order", "0,1,3,2", "--reverse", "--offset-m", "0.25")
         np.testing.assert_allclose((plain - np.load(self.path("d.npy"))) % 2.49827, 0.25, atol=1e-4)
         self.refuse([*said, "--order", "0,1,1,2"], "order", "once")
-        self.refuse([*said, "--order", "0,1,2"], "order")
 
     def test_reference_depth_accepts_frames_in_every_format(self):
         self.write("camera.toml", "fundamental_frequency_hz = 60e6\n[sensor]\ntaps = 2\n"
@@ -173,7 +169,6 @@ class Calibrate(BenchRecordsTest):
         self.do(*arguments, "--perturb", "droop=3%", "-o", "page.html")
         self.assertIn("\"id\":\"robustness\"", self.bytes_of("page.html").decode())
         self.refuse([*arguments, "--perturb", "jiter=50ps"], "jitter=VALUE", code=2)
-        self.refuse([*arguments, "--perturb", "jitter=50"], "with its unit", code=2)
         self.refuse([*arguments, "--perturb", "droop=300%"], "share in (0, 1)", code=2)
         self.refuse([*arguments, "--perturb", "droop=3%", "--robustness"], "cannot be combined", code=2)
         self.refuse([*arguments, "--perturb", "clock=60ns"], "points per period")

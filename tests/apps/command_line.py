@@ -4,9 +4,11 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 TOOL = os.path.abspath(sys.argv.pop(1))
@@ -39,6 +41,13 @@ class CommandLineTest(unittest.TestCase):
         with open(self.path(name), "rb") as file:
             return file.read()
 
+    def wait_for(self, name):
+        for _ in range(1200):
+            if os.path.exists(self.path(name)):
+                return
+            time.sleep(0.05)
+        self.fail(f"{name} did not appear")
+
     def with_camera(self, arguments):
         """Adds the camera of the paper, for which the numbers in tests are valid, unless an option
         or a file next to the raw frames specifies a camera."""
@@ -67,6 +76,15 @@ class CommandLineTest(unittest.TestCase):
         process = self.start(*arguments, **options)
         out, error = process.communicate(timeout=60)
         return process.returncode, out, error.decode(errors="replace")
+
+    def interrupted(self, process, number=signal.SIGINT, timeout=60):
+        """Stops a process, which prints nothing and leaves no hidden file. Returns standard error.
+        """
+        process.send_signal(number)
+        out, error = process.communicate(timeout=timeout)
+        self.assertEqual((process.returncode, out), (130, b""), error)
+        self.assertFalse([name for name in self.files() if ".tofsmith" in name])
+        return error.decode()
 
     def do(self, *arguments, **options):
         """The command must succeed without standard error; returns standard output."""

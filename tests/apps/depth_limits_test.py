@@ -34,20 +34,6 @@ class DepthLimits(CommandLineTest):
             np.testing.assert_array_equal(np.isnan(planes["depth"]), [True, False, True])
             np.testing.assert_allclose(planes["depth"][1], 2, atol=0.05)
 
-    def test_files_are_those_without_limits_if_all_depths_lie_within(self):
-        _, plain = self.decode()
-        _, limited = self.decode("--max-depth", "7.4")
-        for plane in plain:
-            np.testing.assert_array_equal(plain[plane], limited[plane])
-
-    def test_options_replace_the_working_distance_of_the_camera(self):
-        distance = ("--set", "operating.working_distance_m=[1, 2.5]")
-        for options, statuses in (((), [8, 0, 9]), (("--min-depth", "0.4"), [0, 0, 9]),
-                                  (("--max-depth", "4"), [8, 0, 0]),
-                                  (("--min-depth", "0", "--max-depth", "7"), [0, 0, 0])):
-            _, planes = self.decode(*distance, *options)
-            np.testing.assert_array_equal(planes["status"], statuses)
-
     def test_a_filter_and_bands_of_rows_keep_to_the_limits(self):
         limits = ("--min-depth", "1", "--max-depth", "2.5")
         for options in (("--filter", "light"), ("--mixed", "drop"), ("--time-filter", "4")):
@@ -66,13 +52,11 @@ class DepthLimits(CommandLineTest):
 
     def test_impossible_limits(self):
         for options, words in ((("--min-depth", "-1"), "--min-depth"),
-                               (("--min-depth", "nan"), "--min-depth"),
                                (("--max-depth", "0"), "--max-depth"),
                                (("--max-depth", "8"),
                                 "--max-depth = 8; must be > 0 and at most the unambiguous range"),
                                (("--min-depth", "3", "--max-depth", "2"),
-                                "--min-depth = 3; must be below the largest depth, 2 m"),
-                               (("--min-depth", "3", "--max-depth", "3"), "below the largest")):
+                                "--min-depth = 3; must be below the largest depth, 2 m")):
             self.refuse(["decode", "raw.npy", "--code", CODE, *CAMERA, *options, "-o", "no.npz"],
                         words, code=2)
 

@@ -152,15 +152,6 @@ TEST(DescribedOptions, AreInDocumentsKeysAndDescriptionsForOtherLanguages) {
   EXPECT_EQ(list.at(7).at("type"), "number[]");
 }
 
-TEST(DescribedOptions, AreCheckedByTheLibrary) {
-  try {
-    check_fields(Oven{.trays = 0}, "Oven::");
-    FAIL() << "was accepted";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "Oven::trays = 0; must be in [1, 9]");
-  }
-}
-
 }  // namespace
 }  // namespace apps
 }  // namespace tofsmith

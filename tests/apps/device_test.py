@@ -47,7 +47,7 @@ class Device(CommandLineTest):
     @needs_device
     def test_a_device_writes_the_same_files_as_the_cpu(self):
         # See tests/gpu/device_test.cpp for further combinations.
-        for more in ((), ("--average", "2", "--averaged", "3", "--memory-mb", "4"),
+        for more in (("--average", "2", "--averaged", "3", "--memory-mb", "4"),
                      ("--filter", "strong", "--time-filter", "2", "--outputs", "averaged,bin"),
                      ("--average", "2", "--time-filter", "9", "--mixed", "label"),
                      # Time filters with look-ahead run on the CPU.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Export of waveforms, and decoding of raw files with a description."""
+"""Export of waveforms."""
 
 import unittest
 
@@ -12,15 +12,12 @@ QUICK = ("--trials", "200")
 
 
 class Export(CommandLineTest):
-    def test_exported_scripts_equal_those_of_an_upload(self):
+    def test_scripts_are_exported_with_the_tables(self):
         text = self.do("export", "hamiltonian-k3", "--format", "tek-tfw", "--samples", "16",
                        "--periods", "4", "-o", "d", *QUICK)
         self.assertIn("wrote 6 files of tek-tfw, 3 SCPI scripts, manifest.json and report.html", text)
         script = self.bytes_of("d/AFG3022_exposure_2.scpi.txt").decode()
         self.assertRegex(script, r"^# TEKTRONIX AFG3022, AFG3052, AFG3102, AFG3152, AFG3252; ")
-        upload = self.do("upload", "hamiltonian-k3", "--dry-run", "--model", "AFG3252", "--samples",
-                         "16", "--periods", "4", "--exposure", "2")
-        self.assertEqual(script.splitlines()[1:], upload.splitlines()[1:])
 
     def test_harmful_limits_are_reported(self):
         text = self.do("export", "hamiltonian-k5", "--format", "csv", "--rate", "360e6",
@@ -73,7 +70,6 @@ class Export(CommandLineTest):
                  ["one waveform per file", "expected a directory"]),
                 (["--format", "intel-mif", "-o", "p.coe"], 2, ["expected .mif"]),
                 (["--format", "csv", "--rate", "-1", "-o", "d"], 2, ["--rate"]),
-                (["--format", "csv", "--edge-grid", "1", "-o", "d"], 1, ["edge_grid_s"]),
                 (["--format", "csv"], 2, ["--output"]),
                 (["-o", "d"], 2, ["--format"])):
             self.refuse(["export", "hamiltonian-k3", *arguments], *words, code=code)
@@ -84,16 +80,6 @@ class Export(CommandLineTest):
         self.refuse(["export", "hamiltonian-k3", "--format", "verilog-mem", "-o", "d", *QUICK],
                     "pattern.mem", "--force")
         self.do("export", "hamiltonian-k3", "--format", "verilog-mem", "-o", "d", "--force", *QUICK)
-
-
-class RawFormats(CommandLineTest):
-    def test_a_description_excludes_a_layout_and_must_match_the_code(self):
-        self.write("dump.bin", bytes(2 * 4 * 5 * 3))
-        self.write("s.raw.toml", "width = 5\nheight = 4\nmeasurements = 3\nbits = 16\n")
-        decode = ["decode", "dump.bin", "-o", "d.npy", "--raw-format", "s.raw.toml", "--code"]
-        self.refuse([*decode, "hamiltonian-k3", "--layout", "planar"], "--layout", code=2)
-        self.refuse([*decode, "hamiltonian-k4"], "3 measurements", "expected 4")
-        self.refuse([*decode[:-2], "none.raw.toml", "--code", "hamiltonian-k3"], "none.raw.toml")
 
 
 if __name__ == "__main__":

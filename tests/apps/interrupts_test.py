@@ -17,20 +17,10 @@ class Interrupts(CommandLineTest):
     def interrupt(self, *arguments, after=lambda: time.sleep(0.5), directory=None):
         process = self.start(*arguments)
         after()
-        process.send_signal(signal.SIGINT)
-        out, error = process.communicate(timeout=60)
-        self.assertEqual((process.returncode, out), (130, b""), error)
+        error = self.interrupted(process)
         kept = (f"; finished files are kept in {directory}, and the same command resumes from there"
                 if directory else "; nothing was written")
-        self.assertEqual(error.decode(), f"tofsmith: interrupted{kept}\n")
-        self.assertFalse([name for name in self.files() if ".tofsmith" in name])
-
-    def wait_for(self, name):
-        for _ in range(600):
-            if os.path.exists(self.path(name)):
-                return
-            time.sleep(0.1)
-        self.fail(f"{name} did not appear")
+        self.assertEqual(error, f"tofsmith: interrupted{kept}\n")
 
     def wait_for_handler(self, process, number):
         """Waits until the process, which may start slowly, handles the signal."""
@@ -52,18 +42,9 @@ class Interrupts(CommandLineTest):
             process = self.start("decode", "pipe.npy", "--code", "sinusoid-k4", "-o", "d.npy")
             self.wait_for_handler(process, number)
             time.sleep(0.3)
-            process.send_signal(number)
-            out, error = process.communicate(timeout=10)
-            self.assertEqual((process.returncode, out), (130, b""), error)
-            self.assertEqual(error, b"tofsmith: interrupted; nothing was written\n")
+            self.assertEqual(self.interrupted(process, number, timeout=10),
+                             "tofsmith: interrupted; nothing was written\n")
         self.assertEqual(self.files(), ["pipe.npy"])
-
-    def test_a_hang_up_is_handled_like_ctrl_c(self):
-        process = self.start("evaluate", "sinusoid-k4", *LONG)
-        time.sleep(0.5)
-        process.send_signal(signal.SIGHUP)
-        self.assertEqual(process.communicate(timeout=60)[1],
-                         b"tofsmith: interrupted; nothing was written\n")
 
     def test_a_design_killed_while_writing_can_be_continued(self):
         asked = ("design", "--method", "factorize", "--exposures", "3", "--trials", "1000", "-o",
@@ -94,10 +75,8 @@ class Interrupts(CommandLineTest):
         self.interrupt("evaluate", "sinusoid-k4", *LONG, "-o", "e.csv")
         self.assertEqual(self.files(), [])
 
-    def test_evaluate_at_the_best_rotation(self):
+    def test_evaluate_in_other_ways(self):
         self.interrupt("evaluate", "sinusoid-k4", "--best-rotation", *LONG)
-
-    def test_evaluate_by_maximum_likelihood(self):
         self.interrupt("evaluate", "hamiltonian-k4", "--method", "ml", *LONG)
 
     def test_simulate(self):

@@ -1,19 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 """Every command that writes works with little memory, few files, a small stack, and without home
-folder, temporary folder and a writable root.
-
-    limits_test.py TOFSMITH --figures     peak memory on inputs of typical size, under these limits
-"""
+folder, temporary folder and a writable root."""
 
 import os
 import resource
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
-import time
 import unittest
 
 from command_line import TOOL
@@ -27,21 +22,6 @@ LIMITS = {
     resource.RLIMIT_CORE: 0,
 }
 BARE = {"PATH": "/usr/bin:/bin", "TMPDIR": "/nonexistent"}
-# Inputs of typical size; each command may use the outputs of earlier ones.
-USUAL = """codes hamiltonian-k4 -o c.html
-evaluate hamiltonian-k4 sinusoid-k4 -o e.html
-scene table-top --width 640 --height 480 -o look
-simulate table-top --width 640 --height 480 --code hamiltonian-k4 --frames 8 --signal 1e5 -o raw.npy
-decode raw.npy --code hamiltonian-k4 --frame 0 -o d.npz
-decode raw.npy --code hamiltonian-k4 --stack -o d.npy
-decode raw.npy --code hamiltonian-k4 --frame 0 --filter normal --mixed label -o f.ply
-decode raw.npy --code hamiltonian-k4 --frame 0 --method ml -o ml.exr
-simulate table-top --code hamiltonian-k4 --bounces 1 -o bounced.npy
-export hamiltonian-k5 --format keysight-arb --rate 660e6 -o bench
-design --effort 0.1 -o designed
-report designed -o page.html
-demo --effort 0.1 -o demo
-require --error 20mm --vary power --no-map -o need"""
 QUICK = [command for command in COMMANDS if not command.is_slow]
 
 
@@ -113,22 +93,5 @@ class Limits(unittest.TestCase):
         self.assertEqual(set(os.listdir(self.directory)), set(os.listdir(self.inputs)))
 
 
-def print_figures():
-    print(f"{'seconds':>8} {'peak MB':>8}  command")
-    with tempfile.TemporaryDirectory(prefix="tofsmith-test-") as work:
-        for line in USUAL.splitlines():
-            begin = time.monotonic()
-            process = subprocess.Popen([TOOL, "--quiet", *line.split()], cwd=work, env=BARE,
-                                       preexec_fn=limited(LIMITS), stdout=subprocess.DEVNULL)
-            _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-            failed = f"  exit code {process.returncode}" if process.returncode else ""
-            print(f"{time.monotonic() - begin:8.1f} {usage.ru_maxrss / 1024:8.0f}  {line}{failed}",
-                  flush=True)
-
-
 if __name__ == "__main__":
-    if "--figures" in sys.argv:
-        print_figures()
-        sys.exit()
     unittest.main()

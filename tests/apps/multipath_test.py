@@ -26,7 +26,6 @@ class Multipath(CommandLineTest):
     def test_rejected_words(self):
         for arguments, words in (
                 (["--bounces", "2"], ["--bounces", "2"]),
-                (["--bounces", "-1"], ["--bounces", "-1"]),
                 (["--bounce-rays", "64"], ["--bounce-rays", "--bounces"]),
                 (["--bounces", "1", "--bounce-rays", "8"], ["--bounce-rays", "8"]),
                 (["--bounces", "1", "--multipath", "delta=1,ratio=.3"],
@@ -46,9 +45,7 @@ class Multipath(CommandLineTest):
                 ("ratio=.1:.5:.9", "found 'ratio=.1:.5:.9'; expected ratio=a:b,delta=a:b"),
                 ("ratio=.1,delay=1", "found 'delay=1'; expected ratio=a:b,delta=a:b"),
                 ("ratio=", "found 'ratio='"),
-                ("ratio=.5:.1", "operating.multipath.ratio = [0.5, 0.1]; must be"),
                 ("ratio=-.1:.5", "operating.multipath.ratio[0] = -0.1; must be"),
-                ("delta=0:1", "operating.multipath.delay_m[0] = 0; must be"),
                 ("delta=1:11", "below the unambiguous range, 7.495 m")):
             self.refuse(["design", "--multipath", value], "--multipath " + value, words,
                         code=2)
@@ -64,16 +61,6 @@ class Multipath(CommandLineTest):
     def test_rejected_values(self):
         self.refuse([*SIMULATE, "--multipath", "delta=1,ratio=-.3"], "ratio = -0.3",
                     "must be finite and >= 0")
-        self.refuse([*SIMULATE, "--multipath", "delta=11,ratio=.3"], "unambiguous range")
-        self.refuse([*SIMULATE, "--multipath", "delta=2,ratio=.3", "--multipath",
-                     "delta=1,ratio=.3"], "in order")
-        self.refuse(["design", "--set", "operating.multipath.ratio=[0.5,0.1]"],
-                    "operating.multipath.ratio = [0.5, 0.1]; must be")
-
-    def test_rejected_codes(self):
-        self.do(*SIMULATE)
-        self.refuse(["decode", "raw.npy", "--code", "sinusoid-k5", "--set", "sensor.taps=2",
-                     "--method", "two-return", "-o", "d.npz"], "independent means")
 
 
 if __name__ == "__main__":

@@ -64,10 +64,6 @@ class Streaming(CommandLineTest):
         self.assertTrue(document["sliding"])
         frames, windows = (np.load(self.path(f"{name}.npy")) for name in ("frames", "windows"))
         np.testing.assert_array_equal(windows[::3], frames)
-        np.save(self.path("planar.npy"), raw.transpose(0, 3, 1, 2))
-        self.decode("--sliding", "--stack", "--layout", "planar", raw="planar.npy",
-                    output="planar-windows.npy")
-        np.testing.assert_array_equal(np.load(self.path("planar-windows.npy")), windows)
         out = subprocess.run(self.pipe("--sliding"), cwd=self.directory, input=raw.tobytes(),
                              capture_output=True, check=True, timeout=60)
         self.assertEqual(out.stdout, windows.astype("<f4").tobytes())
@@ -135,19 +131,15 @@ class Streaming(CommandLineTest):
     def test_rejects_invalid_filters_and_means(self):
         self.record(frames=5)
         ahead = ("--time-filter", "8")
-        for more, words in ((("--filter", "light", "--filter-set", "windows=4"), ["windows", "found 4", "[1, 3]"]),
-                            (("--filter", "light", "--filter-set", "window=1"), ["did you mean windows?"]),
+        for more, words in ((("--filter", "light", "--filter-set", "window=1"), ["did you mean windows?"]),
                             (("--filter", "light", "--filter-set", "windows"), ["KEY=VALUE"]),
                             (("--filter", "light", "--filter-set", "windows=x"), ["found x"]),
-                            (("--time-filter", "0"), ["found 0"]),
                             ((*ahead, "--time-filter-set", "max_differnce_sigma=3"),
                              ["did you mean max_difference_sigma?"]),
                             (("--look-ahead", "4"), ["--time-filter"]),
                             ((*ahead, "--look-ahead", "-1"), ["found -1; must be in [0, 1000]"]),
-                            (("--average", "6"), ["--average = 6", "contains 5 frames"]),
-                            (("--average", "2", "--frame", "3"), ["3 means"])):
+                            (("--average", "6"), ["--average = 6", "contains 5 frames"])):
             self.refuse(self.arguments(*more), *words, code=2)
-        self.refuse(self.arguments(*ahead, "--memory-mb", "0.03"), "to be filtered")
         set_by_key = self.decode(*ahead, "--time-filter-set", "look_ahead=4", output="set.npy")
         self.assertEqual((set_by_key["time_filter"], set_by_key["look_ahead"]), (8, 4))
         self.decode(*ahead, "--look-ahead", "4")
@@ -223,12 +215,9 @@ class Streaming(CommandLineTest):
                     "--memory-mb", "--stack")
         np.save(self.path("fortran.npy"), np.asfortranarray(raw))
         self.refuse(self.arguments(*few, raw="fortran.npy"), "Fortran", ".npy in C order")
-        np.savez(self.path("raw.npz"), raw=raw)
-        self.refuse(self.arguments(*few, raw="raw.npz"), "raw.npz", "save it as .npy")
-        self.refuse(self.arguments("--memory-mb", "0.000001"), "MB")
         error = self.refuse(self.arguments("--memory-mb", "0.000001"), "--memory-mb")
         self.assertNotIn(".npy is written", error)
-        for value in ("-1", "0", "nan", "inf"):
+        for value in ("0", "nan"):
             self.refuse(self.arguments("--memory-mb", value), "--memory-mb",
                         f"found {value}; must be in (0, 1000000000]", code=2)
 
@@ -257,24 +246,10 @@ class Interrupts(CommandLineTest):
         np.lib.format.open_memmap(self.path("raw.npy"), "w+", "u2", (3000, 600, 800, 3))
         return self.start("decode", "raw.npy", "--code", "hamiltonian-k3", "-o", "d.npy", *more)
 
-    def wait_for(self, name):
-        for _ in range(600):
-            if os.path.exists(self.path(name)):
-                return
-            time.sleep(0.05)
-        self.fail(f"{name} did not appear")
-
-    def end(self, process, code):
-        out, error = process.communicate(timeout=60)
-        self.assertEqual((process.returncode, out), (code, b""), error)
-        self.assertFalse([name for name in self.files() if ".tofsmith" in name])
-        return error.decode()
-
     def test_finished_frames_are_kept_and_counted(self):
         process = self.start_long()
         self.wait_for("d-0002.npy")
-        process.send_signal(signal.SIGINT)
-        error = self.end(process, 130)
+        error = self.interrupted(process)
         self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         done = [name for name in self.files() if name.startswith("d-")]
         self.assertIn(f"decoded {len(done)} of 3000 frames; their files are kept", error)
@@ -285,8 +260,7 @@ class Interrupts(CommandLineTest):
         process = self.start_long("--stack")
         while not [name for name in self.files() if ".tofsmith" in name]:
             time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        error = self.end(process, 130)
+        error = self.interrupted(process)
         self.assertIn("with --stack, files are written only after all frames are decoded", error)
         self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         self.assertEqual(self.files(), ["raw.npy"])
@@ -295,7 +269,8 @@ class Interrupts(CommandLineTest):
         process = self.start_long()
         self.wait_for("d-0000.npy")
         os.truncate(self.path("raw.npy"), 600 * 800 * 3 * 2)
-        error = self.end(process, 1)
+        out, error = (text.decode() for text in process.communicate(timeout=60))
+        self.assertEqual((process.returncode, out), (1, ""), error)
         self.assertIn("the file ends here", error)
         self.assertIn("of 3000 frames", error)
         self.assertIn("d-0000.npy", self.files())

@@ -9,7 +9,6 @@ import io
 import json
 import os
 import random
-import signal
 import sqlite3
 import sys
 import time
@@ -117,13 +116,9 @@ class Sweep(CommandLineTest):
     def test_an_interrupted_run_keeps_finished_items(self):
         self.write("s.toml", sweep_text(100_000_000))
         process = self.start("sweep", "s.toml", "--store", "s.sqlite")
-        while not os.path.exists(self.path("s.sqlite")):
-            time.sleep(0.02)
+        self.wait_for("s.sqlite")
         time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
-        out, error = process.communicate(timeout=60)
-        self.assertEqual((process.returncode, out), (130, b""))
-        self.assertEqual(error.decode(),
+        self.assertEqual(self.interrupted(process),
                          "tofsmith: interrupted; finished items are kept in s.sqlite, and the same "
                          "command resumes from there\n")
         self.assertEqual(self.sweep("s.sqlite", "--status")["running"], 0)
@@ -188,10 +183,6 @@ class Sweep(CommandLineTest):
         self.write("big.toml", SWEEP.replace("count = 5", "count = 900000").replace(
             "[12, 15]", "[12, 13, 14, 15, 16, 17]"))
         self.refuse(["sweep", "big.toml", *store], "1.08e+07 items", "--yes", code=2)
-        self.write("bad.toml", SWEEP.replace("light.peak_factor", "light.peak_fctor"))
-        self.refuse(["sweep", "bad.toml", *store], "bad.toml:6:7", 'did you mean "light.peak_factor"?')
-        self.write("bad.toml", SWEEP.replace("12, 15", "12, 0.5"))
-        self.refuse(["sweep", "bad.toml", *store], "bad.toml:7:15", "light.peak_factor = 0.5")
 
     def test_a_store_requires_its_instruction_set(self):
         self.sweep("s.sqlite")

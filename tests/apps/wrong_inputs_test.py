@@ -16,63 +16,24 @@ DUMP = "width = 4\nheight = 2\nmeasurements = 4\nbits = 12\n"
 FILES = {
     "good.toml": CAMERA,
     "lens.toml": CAMERA + "[lens]\nfx_px = 300\nfy_px = 300\ncx_px = 3.5\ncy_px = 2.5\n",
-    "unit.toml": "fundamental_frequency_hz = 20 MHz\n",
-    "comma.toml": CAMERA + "exposure_s = 0,02\n",
     "word.toml": CAMERA + "[sensor]\nreadout = difference\n",
-    "binary.toml": b"\x7fELF\x02\x01\x01\x00\x00",
-    "typo.toml": "fundamental_freqency_hz = 20e6\n",
-    "ms.toml": CAMERA + "exposure_ms = 20\n",
-    "table.toml": "[light\n",
-    "twice.toml": CAMERA + CAMERA,
-    "text.toml": 'fundamental_frequency_hz = "fast"\n',
     "negative.toml": CAMERA + "exposure_s = -1\n",
-    "half_lens.toml": CAMERA + "[lens]\nfx_px = 300\n",
-    "kind.toml": CAMERA + '[light]\nimpulse_response = { kind = "gauss" }\n',
-    "taps.toml": CAMERA + "[sensor]\ntaps = 2.5\n",
-    "empty.toml": "",
     "d.raw.toml": DUMP,
-    "big.raw.toml": DUMP + 'byte_order = "big"\n',
-    "high.raw.toml": DUMP + 'align = "high"\n',
-    "short.raw.toml": DUMP.replace("height = 2", "height = 3"),
-    "three.raw.toml": DUMP.replace("measurements = 4", "measurements = 2").replace("height = 2",
-                                                                                 "height = 4"),
-    "packing.raw.toml": DUMP + 'packing = "raw12"\n',
-    "s.toml": "[[sphere]]\ncentre_m = [0, 0, 2]\nradius = 1\n",
+    "s.toml": "[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n",
     "sweep.toml": f'camera = "{"A" * 300}"\ncodes = ["sinusoid-k4"]\n',
     "khz.toml": "fundamental_frequency_hz = 20\n",
     "equals.toml": CAMERA + "exposure_s 0.02\n",
-    "colon.toml": "fundamental_frequency_hz: 20e6\n",
     "quote.toml": 'name = "mine\n' + CAMERA,
     "curly.toml": "name = \u201cmine\u201d\n" + CAMERA,
-    "sections.toml": CAMERA + "[sensors]\ntaps = 2\n",
-    "again.toml": CAMERA + "[sensor]\ntaps = 2\n[sensor]\nread_noise_e = 3\n",
     "no_table.toml": CAMERA + "taps = 2\n",
     "bandwidth.toml": CAMERA + "[light]\nbandwidth_hz = 80e6\n",
     "focal.toml": CAMERA + "[optics]\nfocal_length_m = 4\n",
-    "peak.toml": CAMERA + "[light]\npeak_factor = 0.5\n",
-    "drain.toml": CAMERA + "[sensor]\ndrain = 1\n",
-    "text_taps.toml": CAMERA + '[sensor]\ntaps = "2"\n',
     "cutoff.toml": CAMERA + '[light]\nimpulse_response = { kind = "lowpass" }\n',
-    "mhz.toml": CAMERA + '[light]\nimpulse_response = { kind = "lowpass", cutoff_mhz = 80 }\n',
     "behind.toml": CAMERA + "[lens]\nfx_px = -300\nfy_px = 300\ncx_px = 3.5\ncy_px = 2.5\n",
-    "level.toml": CAMERA + "[operating]\nsignal_e_per_s = 3e6\n",
-    "levels.toml": CAMERA + "[operating]\nsignal_e_per_s = []\n",
-    "inf.toml": CAMERA + "exposure_s = inf\n",
-    "c.code.json": "{}",
     "cut.code.json": '{"name": "x", "modu',
     "columns.csv": "time,light\n0,1\n1,0\n",
-    "no_bits.raw.toml": DUMP.replace("bits = 12\n", ""),
-    "little.raw.toml": DUMP + 'byte_order = "LE"\n',
-    "layout.raw.toml": DUMP + 'layout = "HWK"\n',
     "wide.raw.toml": DUMP.replace("bits = 12", "bits = 33"),
-    "header.raw.toml": DUMP + "header_bytes = 100\n",
     "ball.toml": "[[ball]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n",
-    "flat_centre.toml": "[[sphere]]\ncentre_m = [0, 0]\nradius_m = 1\n",
-    "m.obj": "v 0 0 1\nv 1 0 1\nf 1 2 9\n",
-    "no_codes.toml": 'camera = "good.toml"\n',
-    "no_values.toml": 'camera = "good.toml"\ncodes = ["sinusoid-k4"]\n[[axis]]\n'
-                      'key = "light.peak_factor"\nvalues = []\n',
-    "no_camera.toml": 'camera = "goood.toml"\ncodes = ["sinusoid-k4"]\n',
     "two.txt": "0\n1\n",
     "note.txt": "hello\n",
 }
@@ -80,81 +41,56 @@ FILES = {
 # Command | words of the answer, separated by ";". The exit code is 1, or 2 for wrong usage.
 WRONG = """
 decode raw.npy --code sinusoid-k5 -o d.npy | 4 measurements; expected 5
-decode raw.npy --code sinus-k4 -o d.npy | sinus-k4; sinusoid-k4
 decode raw.npy -o d.npy | --code is required; raw.code.json
-decode raw.npy --code sinusoid-k4 | --output
 require paper-10f0 --error 5mm --distance 3m --klux 20 | [optics]; --set 'optics = {; filter_width_m = 30e-9
 decode raw.npy --code sinusoid-k4 -o d | .npz
 decode raw.npy --code sinusoid-k4 -o d.ply | --view-deg; [lens]
 decode raw.npy --code sinusoid-k4 --kind z -o d.npy | --view-deg; [lens]
 decode raw.npy --code sinusoid-k4 --view-deg 200 -o d.ply | --view-deg; found 200
 decode raw.npy --code sinusoid-k4 --order 0,1,2 -o d.npy | order
-decode raw.npy --code sinusoid-k4 --order 0,0,1,2 -o d.npy | order
 decode raw.npy --code sinusoid-k4 --layout planar -o d.npy | raw.npy
 decode raw.npy --code sinusoid-k4 --camera absent.toml -o d.npy | absent.toml
-decode raw.npy --code sinusoid-k4 --camera paper-10fo -o d.npy | did you mean paper-10f0?
 decode raw.npy --code sinusoid-k4 --outputs amplitudes -o d.npz | amplitudes; signal
-decode raw.npy --code sinusoid-k4 --outputs signal -o d.npy | only depth
 decode raw.npy --code sinusoid-k4 --filter medium -o d.npy | medium; normal
 decode raw.npy --code sinusoid-k4 --frame 3 -o d.npy | --frame; 1 frame
-decode raw.npy --code sinusoid-k4 --average 2 -o d.npy | --average; 1 frame
 decode raw.npy --code sinusoid-k4 --offset-m 2kg -o d.npy | found 2kg; expected a number
 decode raw.npy --code sinusoid-k4 --undistort -o d.npy | [lens]
 decode raw.npy --code sinusoid-k4 --time-filter 0 -o d.npy | found 0
-decode raw.npy --code c.code.json -o d.npy | c.code.json
 decode raw.npy --code note.txt -o d.npy | note.txt
 decode note.txt --code sinusoid-k4 -o d.npy | note.txt
-decode bool.npy --code sinusoid-k4 -o d.npy | bool
-decode flat.npy --code sinusoid-k4 -o d.npy | shape (2, 4)
-decode d.bin --code sinusoid-k4 -o d.npy | --raw-format
-decode d.bin --code sinusoid-k4 --raw-format big.raw.toml -o d.npy | read as big-endian; byte_order = "little"
-decode d.bin --code sinusoid-k4 --raw-format high.raw.toml -o d.npy | high bits; align = "low"
-decode d.bin --code sinusoid-k4 --raw-format short.raw.toml -o d.npy | found 64 bytes
-decode d.bin --code sinusoid-k4 --raw-format three.raw.toml -o d.npy | 2 measurements
-decode d.bin --code sinusoid-k4 --raw-format packing.raw.toml -o d.npy | raw12; mipi
+decode bool.npy --code sinusoid-k4 -o d.npy | bool; expected numbers; astype
+decode flat.npy --code sinusoid-k4 -o d.npy | shape (2, 4); all files
+decode d.bin --code sinusoid-k4 -o d.npy | found the extension '.bin'; a sensor's dump; --raw-format
+decode d.bin --code sinusoid-k4 --raw-format d.raw.toml --layout planar -o d.npy | --layout
 decode d.bin --code sinusoid-k4 --raw-format note.txt -o d.npy | note.txt:1
 decode - --code sinusoid-k4 -o d.npy | -o -
 evaluate | CODE
-evaluate sinusoid-k4 --camera unit.toml | unit.toml:1; needs quotes
-evaluate sinusoid-k4 --camera comma.toml | comma.toml:2; decimals have a point
 evaluate sinusoid-k4 --camera word.toml | word.toml:3; readout = "difference"
-evaluate sinusoid-k4 --camera binary.toml | binary file
-evaluate sinusoid-k4 --camera typo.toml | typo.toml:1; did you mean fundamental_frequency_hz?
-evaluate sinusoid-k4 --camera ms.toml | did you mean exposure_s, in s?
-evaluate sinusoid-k4 --camera table.toml | table.toml:1
-evaluate sinusoid-k4 --camera twice.toml | twice.toml:2
-evaluate sinusoid-k4 --camera text.toml | found "fast"; expected a number
 evaluate sinusoid-k4 --camera negative.toml | exposure_s = -1
-evaluate sinusoid-k4 --camera half_lens.toml | lens.fy_px
-evaluate sinusoid-k4 --camera kind.toml | "gauss"; "gaussian"
-evaluate sinusoid-k4 --camera taps.toml | sensor.taps; expected an integer
-evaluate sinusoid-k4 --camera empty.toml | found no fundamental_frequency_hz
 evaluate sinusoid-k4 --camera raw.npy | raw.npy
 evaluate sinusoid-k4 --set light.peak_factr=5 | did you mean light.peak_factor?
 evaluate sinusoid-k4 --set peak_factor=5 | peak_factor
-evaluate sinusoid-k4 --set fundamental_frequency_hz=20kg | 20kg
 evaluate sinusoid-k4 --set exposure_s | key = value
 evaluate sinusoid-k4 --decoder plain | sensor.decoder; only valid with readout = "rows"
 design paper-10f0 --decoder ml | --decoder: ml not in; whitened; plain
 evaluate sinusoid-k4 --trials 0 | --trials; found 0
 evaluate sinusoid-k4 --trials 1.5 | --trials; 1.5
-evaluate sinusoid-k4 --trials lots | --trials; lots
 evaluate sinusoid-k4 --distance 2kg | --distance; found 2kg; expected a number
 evaluate sinusoid-k4 --distance -1 | --distance
 evaluate sinusoid-k4 --distance 2 | optics
 evaluate sinusoid-k4 --klux 20 | --distance
 evaluate sinusoid-k4 --method zncd | zncd
 evaluate sinusoid-k4 --error 5 | unknown option '--error'
-evaluate hamiltonian-k20 | hamiltonian-k20; [3, 10]
+evaluate hamiltonian-k20 | hamiltonian-k20; must be in [3, 10]; `tofsmith codes`; hamiltonian-k4
 evaluate multifrequency-0x4 | multifrequency-0x4
+evaluate multifrequency-1x4-4000x4 | 4000; must be in [1, 2048]
+evaluate sinusoid-k2 | measurements = 2; >= 3
+evaluate note.txt | note.txt; expected .json, .npz
 evaluate sinusoid-k4 -o e.xls | expected .csv
 evaluate sinusoid-k4 --interference 0 | --interference; found 0; [1, 1000]
 evaluate sinusoid-k4 --set operating.interference.camera=2 | did you mean operating.interference.cameras?
-evaluate sinusoid-k4 --set operating.interference.signal_ratio=0 | operating.interference.signal_ratio; (0, 100]
-evaluate sinusoid-k4 --set 'operating.interference.code="other"' | operating.interference.code; "same"
 evaluate sinusoid-k4 --set 'operating.interference.spreading="noise"' | operating.interference.spreading; signs
 evaluate sinusoid-k4 --set operating.interference.parts=4 | operating.interference.parts; spreading = "phases"
-evaluate sinusoid-k4 --set operating.interference.frequency_offset_hz=-1e8 | frequency_offset_hz; must be >=
 design --taps 3 | --set sensor.taps
 evaluate sinusoid-k4 --exposure-s 0.01 | --set exposure_s
 evaluat sinusoid-k4 | did you mean evaluate?
@@ -167,7 +103,6 @@ require good.toml --error 5 | unit, such as 5mm
 require good.toml --error 5kg | 5kg
 require good.toml --error -5mm | -5mm
 require good.toml | --error
-export sinusoid-k4 --format arb -o w.csv | arb
 export sinusoid-k4 --format csv --rate 5mm -o w | --rate; found 5mm
 simulate table-tap --code sinusoid-k4 -o r.npy | did you mean table-top?
 simulate table-top --code sinusoid-k4 -o r.txt | r.txt
@@ -175,15 +110,14 @@ simulate table-top --code sinusoid-k4 --signal 2m -o r.npy | --signal; found 2m
 simulate table-top --code sinusoid-k4 --width 0 -o r.npy | --width
 simulate table-top --code sinusoid-k4 --frames 0 -o r.npy | --frames
 simulate z.npz --kind radial --code sinusoid-k4 -o r.npy | z.npz; kind z
-simulate s.toml --code sinusoid-k4 -o r.npy | radius_m
 scene absent.npy | absent.npy
 scene table-top --scale-m 2 | --scale-m
 scene note.txt | note.txt
+scene s.toml --width 64 -o out | --width; [view]
 sweep sweep.toml --store s.sqlite | AAAA
-sweep absent.toml --store s.sqlite | absent.toml
 sweep good.toml --store s.sqlite | good.toml
 codes sinusoid-k4 -o c.doc | c.doc
-codes gray-k99 | gray-k99
+codes gray-k99 | gray-k99; `tofsmith codes`
 cameras kinect | kinect
 report . | design.json
 calibrate noise raw.npy -o c.toml | --dark
@@ -193,29 +127,17 @@ decode --code sinusoid-k4 -o d.npy | RAW is required
 decode raw.npy raw.npy --code sinusoid-k4 -o d.npy | 2 files, one per measurement; expected 4
 decode raw.npy --code good.toml -o d.npy | good.toml; camera; expected a code
 decode raw.npy --code raw.npy -o d.npy | shape (2, 4, 4); expected (N, K)
-decode raw.npy --code multifrequency-4x4-5x4 -o d.npy | 4 measurements; expected 8
-decode raw.npy --code sinusoid-k4 --set sensor.taps=2 -o d.npy | 4 measurements; expected 8
 decode raw.npy --code sinusoid-k4 --taps 2 -o d.npy | --taps; sinusoid-k4; --set sensor.taps=2
-decode raw.npy --code sinusoid-k4 -o raw.npy | raw.npy; is the input
-decode raw.npy --code sinusoid-k4 -o absent/d.npy | directory absent does not exist
 decode raw.npy --code sinusoid-k4 -o d.jpg | ".jpg"; expected .npy
 decode raw.npy --code sinusoid-k4 --order 0-3 -o d.npy | --order: found 0-3
 decode raw.npy --code sinusoid-k4 --order 1,2,3,4 -o d.npy | order = 1, 2, 3, 4; 0, 1, ...
 decode raw.npy --code sinusoid-k4 --bits 12 -o d.npy | unknown option '--bits'
 decode raw.npy --code sinusoid-k4 --lens l.yaml -o d.ply | unknown option '--lens'
-decode raw.npy --code sinusoid-k4 --hdr 1,4 -o d.npy | 2 exposures; 1 frame
 decode raw.npy --code sinusoid-k4 --kind depth -o d.npy | --kind; {radial,z}
 decode raw.npy --code sinusoid-k4 --raw-format d.raw.toml -o d.npy | raw.npy; NumPy array
-decode planes.npy --code sinusoid-k4 -o d.npy | shape (4, 30, 40); --layout planar
-decode complex.npy --code sinusoid-k4 -o d.npy | complex numbers
 decode z.npz --code sinusoid-k4 -o d.npy | depth, depth_is_z; 'raw'
-decode good.toml --code sinusoid-k4 -o d.npy | '.toml'; expected .npy
 decode d.bin --code sinusoid-k5 --raw-format d.raw.toml -o d.npy | 4 measurements; expected 5
-decode d.bin --code sinusoid-k4 --raw-format no_bits.raw.toml -o d.npy | found no bits; bits = 12
-decode d.bin --code sinusoid-k4 --raw-format little.raw.toml -o d.npy | "LE"; "little"
-decode d.bin --code sinusoid-k4 --raw-format layout.raw.toml -o d.npy | "HWK"; "interleaved"
 decode d.bin --code sinusoid-k4 --raw-format wide.raw.toml -o d.npy | bits = 33; [1, 32]
-decode d.bin --code sinusoid-k4 --raw-format header.raw.toml -o d.npy | 64 bytes; 100 of header
 decode signed.bin --code sinusoid-k4 --raw-format d.raw.toml -o d.npy | signed = true would fit
 decode d.bin --code sinusoid-k4 --raw-format absent.raw.toml -o d.npy | absent.raw.toml; no such file
 evaluate good.toml sinusoid-k4 | good.toml; camera; --camera
@@ -223,30 +145,18 @@ evaluate columns.csv | columns.csv; modulation_1
 evaluate cut.code.json | cut.code.json:1
 evaluate Sinusoid_K4 | did you mean sinusoid-k4?
 evaluate gray | did you mean gray-k4?
-evaluate sinusoid | did you mean sinusoid-k4?
 evaluate --code sinusoid-k4 | unknown option '--code'
 evaluate sinusoid-k4 --camera khz.toml | khz.toml:1; 20 MHz are 20e6
 evaluate sinusoid-k4 --camera equals.toml | equals.toml:2; expected '='
-evaluate sinusoid-k4 --camera colon.toml | colon.toml:1; expected '='
 evaluate sinusoid-k4 --camera quote.toml | quote.toml:1; ends with a quote
 evaluate sinusoid-k4 --camera curly.toml | curly.toml:1; straight quotes
-evaluate sinusoid-k4 --camera sections.toml | did you mean sensor?
-evaluate sinusoid-k4 --camera again.toml | again.toml:4; 'sensor'
 evaluate sinusoid-k4 --camera no_table.toml | no_table.toml:2; did you mean sensor.taps?
 evaluate sinusoid-k4 --camera bandwidth.toml | did you mean light.impulse_response.cutoff_hz?
 evaluate sinusoid-k4 --camera focal.toml | did you mean lens.focal_length_m?
-evaluate sinusoid-k4 --camera peak.toml | peak.toml:3; >= 1
-evaluate sinusoid-k4 --camera drain.toml | found 1; expected true or false
-evaluate sinusoid-k4 --camera text_taps.toml | found "2"; expected an integer
 evaluate sinusoid-k4 --camera cutoff.toml | cutoff_hz = 100e6
-evaluate sinusoid-k4 --camera mhz.toml | did you mean light.impulse_response.cutoff_hz, in Hz?
 evaluate sinusoid-k4 --camera behind.toml | lens.fx_px = -300
-evaluate sinusoid-k4 --camera level.toml | expected a list of numbers
-evaluate sinusoid-k4 --camera levels.toml | at least one level
-evaluate sinusoid-k4 --camera inf.toml | found inf; finite
 evaluate sinusoid-k4 --set light.cutoff_hz=80e6 | did you mean light.impulse_response.cutoff_hz?
 evaluate sinusoid-k4 --set exposure_s=0,02 | decimals have a point
-evaluate sinusoid-k4 --set light.peak_factor=high | found "high"; expected a number
 evaluate sinusoid-k4 --set sensor.taps=9 | multiple of the 9 taps
 evaluate sinusoid-k4 --taps 3 | --taps; --set sensor.taps=3
 evaluate sinusoid-k4 --camera | --camera: found no value
@@ -274,16 +184,9 @@ evaluate sinusoid-k4 --tap-order blocked | --tap-order; sinusoid-k4; array
 export sinusoid-k4 --format csv -o w.docx | w.docx; expected .csv
 simulate table-top --code sinusoid-k4 --truth t.txt -o r.npy | t.txt; expected one of .npy
 simulate table-top --code sinusoid-k4 --frames 2.5 -o r.npy | --frames: found 2.5
-simulate raw.npy --code sinusoid-k4 -o r.npy | shape (2, 4, 4); expected (H, W)
 simulate note.txt --code sinusoid-k4 -o r.npy | several scenes; expected a directory
 simulate ball.toml --code sinusoid-k4 -o r.npy | unknown key ball; sphere
-simulate flat_centre.toml --code sinusoid-k4 -o r.npy | found 2 numbers; three
-simulate m.obj --code sinusoid-k4 -o r.npy | m.obj:3; vertex index 9
 simulate table-top --scene room --code sinusoid-k4 -o r.npy | unknown option '--scene'
-sweep no_codes.toml --store s.sqlite | codes = [
-sweep no_values.toml --store s.sqlite | values; empty list
-sweep no_camera.toml --store s.sqlite | goood.toml; no such file
-sweep good.toml --store s.sqlite --shard 9/8 | 9/8; such as 3/8
 atlas --taps 7 | found no code; tofsmith atlas
 calibrate | expected one of; noise
 calibrate noize raw.npy | unknown command 'noize'; did you mean noise?
@@ -299,7 +202,6 @@ version | unknown command 'version'; expected one of
 
 # Commands that succeed with a warning or a note.
 NOTED = """
-decode mixed.npy -o a.npy | raw numbers do not fit this code; --order 0,2,1,3
 decode mixed.npy --camera paper-10f0 -o b.npy | warning: the camera differs from mixed.camera.toml
 decode mixed.npy --code square-k4 -o c.npy | warning: the code square-k4 differs from mixed.code.json
 evaluate sinusoid-k4 --camera indoor --set optics.pixel_pitch_m=7 --distance 3 | check the unit
@@ -315,8 +217,6 @@ class WrongInputs(CommandLineTest):
             self.write(name, content)
         np.save(self.path("raw.npy"), np.arange(32, dtype=np.float32).reshape(2, 4, 4))
         np.save(self.path("bool.npy"), np.ones((2, 4, 4), bool))
-        np.save(self.path("planes.npy"), np.ones((4, 30, 40), np.float32))
-        np.save(self.path("complex.npy"), np.ones((2, 4, 4), complex))
         np.save(self.path("flat.npy"), np.ones((2, 4), np.float32))
         np.savez(self.path("z.npz"), depth=np.ones((2, 4), np.float32),
                  depth_is_z=np.ones(1, np.uint8))
@@ -339,9 +239,6 @@ class WrongInputs(CommandLineTest):
     def test_conflicts_are_noted(self):
         self.do("simulate", "table-top", "--width", "40", "--height", "30", "--camera", "good.toml",
                 "--code", "sinusoid-k4", "--signal", "1e6", "-o", "mixed.npy")
-        raw = np.load(self.path("mixed.npy"))
-        os.remove(self.path("mixed.npy"))
-        np.save(self.path("mixed.npy"), raw[..., [0, 2, 1, 3]])
         os.link(self.path("mixed.npy"), self.path("broken.npy"))
         self.write("broken.camera.toml", "[light\n")
         for row in NOTED:

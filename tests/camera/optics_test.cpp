@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "refusal.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -116,12 +117,7 @@ TEST(Optics, RejectsImpossibleValues) {
   const auto refusal = [](auto&& change) {
     Optics optics = plain_optics();
     change(optics);
-    try {
-      optics.validate();
-    } catch (const InvalidArgument& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return refusal_of([&] { optics.validate(); });
   };
   EXPECT_EQ(refusal([](Optics&) {}), "accepted");
   EXPECT_THAT(refusal([](Optics& o) { o.source_power_w = 0.0; }),

@@ -13,10 +13,11 @@
 #include "core/shared/random.hpp"
 #include "decode/ambient_projection.hpp"
 #include "decode/search/tile_projection.hpp"
+#include "decode/table_resolution.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"
+#include "random_codes.hpp"
 #include "reference_decoder.hpp"
-#include "tofsmith/camera/forward_model.hpp"
 
 namespace tofsmith {
 
@@ -40,12 +41,7 @@ struct CurveInFewDimensions {
       for (int j = 0; j < rank; ++j)
         curve(n, j) = std::cos(2 * std::numbers::pi * (n * (j / 2 + 1.0) / samples - j % 2 * 0.25));
     direction = curve.rowwise().normalized();
-    table.correlation = (curve * basis.transpose()).array() + 2.0;
-    const auto every = [](double value) { return Eigen::VectorXd::Constant(measurements, value); };
-    table.ambient_gain = table.exposure_s = table.gain_e_per_raw = every(1.0);
-    table.dark_electrons = table.black_level = every(0.0);
-    table.constant_variance_e2 = every(1.0);
-    table.range_m = 1.0;
+    table = table_of_rows(((curve * basis.transpose()).array() + 2.0).matrix(), 1.0);
   }
 
   /// Returns a pixel between bins n and n + 1 with |P y'| = 100 `residual`, of which 100 lies in
@@ -99,7 +95,7 @@ TEST(BinMatcher, ResolvesTiesToTheLowestBin) {
 DecodingTable table_of(const std::string& code, double peak_factor) {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = peak_factor;
-  return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
+  return decoding_table_of(code, camera);
 }
 
 DecodingTable rounded_otherwise(DecodingTable table) {
@@ -139,21 +135,12 @@ TEST(AmbientProjection, BasisIsOrthonormalAndSpansTheCurve) {
 // Rounding error bound of every projected pixel, compared with double arithmetic.
 
 DecodingTable random_table(int measurements, bool is_equal, RandomStream& random) {
-  DecodingTable table;
-  table.correlation = Eigen::MatrixXd(60, measurements);
-  for (double& value : table.correlation.reshaped()) value = random.uniform();
-  const auto about = [&](double value) {
-    Eigen::VectorXd v(measurements);
-    for (double& x : v) x = is_equal ? value : value * (0.5 + random.uniform());
-    return v;
-  };
-  table.ambient_gain = about(0.5);
-  table.exposure_s = about(0.01);
-  table.dark_electrons = about(30.0);
-  table.constant_variance_e2 = about(100.0);
-  table.black_level = about(64.0);
-  table.gain_e_per_raw = about(3.0);
-  table.range_m = 10.0;
+  DecodingTable table = random_table(RandomCode{measurements, 60, measurements - 1}, random);
+  if (!is_equal) return table;
+  for (Eigen::VectorXd* values :
+       {&table.ambient_gain, &table.exposure_s, &table.dark_electrons, &table.constant_variance_e2,
+        &table.black_level, &table.gain_e_per_raw})
+    values->setConstant((*values)[0]);
   return table;
 }
 

@@ -5,14 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <numbers>
-#include <utility>
 
 #include "core/shared/random.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
+#include "decode/table_resolution.hpp"
 #include "each_target.hpp"
 #include "output_setup.hpp"
 #include "random_codes.hpp"
@@ -108,37 +106,11 @@ TEST(Decoder, RecoversEveryDepthOnTheRiseOfARamp) {
   }
 }
 
-TEST(Decoder, RecoversEveryDepthWithUnequalExposuresAndDarkCurrent) {
-  Camera camera = camera_with("paper-30x");
-  camera.exposure_s.each_s = {0.05, 0.08, 0.17};
-  camera.sensor.dark_current_e_per_s = 3e3;
-  EXPECT_LT(largest_error_bin(DecodeSetup("hamiltonian-k3", camera)), 1e-3);
-}
-
 /// Sums and multiples of whole electrons are exact in single precision.
 std::vector<float> whole_noisy_pixels(const DecodingTable& table, int pixels) {
   std::vector<float> raw = noisy_pixels(table, 1e4, 1e4, pixels, 7);
   for (float& value : raw) value = std::round(value);
   return raw;
-}
-
-TEST(Decoder, PermutingTheColumnsOfACodeLeavesDepthUnchanged) {
-  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const std::array order = {3, 0, 4, 2, 1};
-  DecodingTable permuted = table;
-  for (int k = 0; k < 5; ++k)
-    permuted.correlation.col(k) = table.correlation.col(order[static_cast<std::size_t>(k)]);
-  const Decoder other(permuted);
-
-  const std::vector<float> raw = whole_noisy_pixels(table, 5000);
-  std::vector<float> permuted_raw(raw.size());
-  for (std::size_t i = 0; i < raw.size(); ++i)
-    permuted_raw[i] = raw[i / 5 * 5 + static_cast<std::size_t>(order[i % 5])];
-  EXPECT_EQ(bins_of(setup.decoder, raw), bins_of(other, permuted_raw));
-  const auto a = depth_bins_of(setup.decoder, raw), b = depth_bins_of(other, permuted_raw);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    EXPECT_NEAR(circular_difference(a[i], b[i], 240), 0.0, 1e-6);
 }
 
 TEST(Decoder, AddingAmbientLightLeavesDepthUnchanged) {
@@ -180,37 +152,17 @@ TEST(Decoder, ReadsCountsAsElectrons) {
   EXPECT_EQ(bins_of(electrons.decoder, raw), bins_of(counts.decoder, raw_counts));
 }
 
-TEST(Decoder, PositionsAreWithinOneBinOfTheBestBin) {
-  const DecodeSetup setup("multifrequency-k5", camera_with("paper-10f0"));
-  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e3, 1e5, 5000, 3);
-  const auto bins = bins_of(setup.decoder, raw);
-  const auto positions = depth_bins_of(setup.decoder, raw);
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    EXPECT_GE(positions[i], 0.0);
-    EXPECT_LT(positions[i], 240.0);
-    EXPECT_LE(std::abs(circular_difference(positions[i], bins[i], 240.0)), 1.0);
-  }
-}
-
-bool same_bits(const Image<float>& a, const Image<float>& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.size() * sizeof(float)) == 0;
-}
-
 TEST(Decoder, GivesTheSameBitsOnAnyNumberOfThreads) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 3e3, 1e4, 20011, 5), 4);
+  constexpr int pixels = 20011;
+  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e3, 1e4, pixels, 5);
   const auto decode_on = [&](int threads) {
     const ThreadLimit limit(threads);
-    return setup.decoder.decode(frame);
+    Outputs outputs(pixels);
+    setup.decoder.decode(RawView::interleaved(raw.data(), 1, pixels, 4), outputs.view());
+    return outputs;
   };
-  const DepthImage one = decode_on(1), many = decode_on(4);
-  EXPECT_TRUE(same_bits(one.depth_m, many.depth_m));
-  EXPECT_TRUE(same_bits(one.signal_e_per_s, many.signal_e_per_s));
-  EXPECT_TRUE(same_bits(one.ambient_e_per_s, many.ambient_e_per_s));
-  EXPECT_TRUE(same_bits(one.confidence, many.confidence));
-  EXPECT_TRUE(same_bits(one.deviation_m, many.deviation_m));
-  EXPECT_EQ(one.status.pixels, many.status.pixels);
+  expect_same(decode_on(1), decode_on(4));
 }
 
 TEST(Decoder, DecodesEachFrameIndependently) {
@@ -286,24 +238,15 @@ TEST(DecoderOfRandomCodes, FindsTheBinsOfTheDefinition) {
     for_each_target([&](std::int64_t) {
       std::vector<std::int32_t> bin(expected.size());
       decoder.decode_bins(raw.data(), pixels, bin.data());
-      for (std::size_t i = 0; i < bin.size(); ++i)
-        ASSERT_EQ(bin[i], expected[i])
+      for (int i = 0; i < pixels; ++i) {
+        std::int32_t alone = 0;
+        decoder.decode_bins(raw.data() + i * code.measurements, 1, &alone);
+        ASSERT_EQ(bin[static_cast<std::size_t>(i)], expected[static_cast<std::size_t>(i)])
             << "pixel " << i << " of K = " << code.measurements << ", N = " << code.samples;
+        ASSERT_EQ(alone, expected[static_cast<std::size_t>(i)]) << "pixel " << i;
+      }
     });
   }
-}
-
-DecodingTable measured_table_of(Eigen::MatrixXd correlation) {
-  DecodingTable table;
-  const auto every = [&](double value) {
-    return Eigen::VectorXd::Constant(correlation.cols(), value);
-  };
-  table.ambient_gain = table.exposure_s = table.gain_e_per_raw = every(1.0);
-  table.dark_electrons = table.black_level = every(0.0);
-  table.constant_variance_e2 = every(1.0);
-  table.range_m = 1.0;
-  table.correlation = std::move(correlation);
-  return table;
 }
 
 /// Triangle waves and integer raw values, which every processor computes identically.
@@ -318,7 +261,7 @@ struct WholeNumbers {
                                   0.5 * std::abs(2 * (twice - std::floor(twice)) - 1);
       }
     }
-    table = measured_table_of(std::move(table.correlation));
+    table = table_of_rows(table.correlation, 1.0);
     for (int i = 0; i < pixels; ++i) {
       const int n =
           i < pixels / 2 ? i * samples / pixels : static_cast<int>(random.uniform() * samples);
@@ -356,7 +299,7 @@ DecodingTable table_of_steps(RandomStream& random) {
   for (double& level : levels.reshaped()) level = std::floor(4.0 * random.uniform());
   Eigen::MatrixXd correlation(samples, measurements);
   for (int n = 0; n < samples; ++n) correlation.row(n) = levels.row(n * steps / samples);
-  return measured_table_of(correlation);
+  return table_of_rows(correlation, 1.0);
 }
 
 TEST(DecoderOfRandomCodes, ResolvesTiesToTheLowestBinInBrightAmbientLight) {
@@ -374,42 +317,6 @@ TEST(DecoderOfRandomCodes, ResolvesTiesToTheLowestBinInBrightAmbientLight) {
       for (int i = 0; i < pixels; ++i)
         ASSERT_EQ(bin[i], expected[i]) << "pixel " << i << " of code " << code << ", " << ambient;
     }
-  }
-}
-
-TEST(DecoderOfRandomCodes, FindsTheSameBinWhateverTheNeighbours) {
-  RandomStream random(29, 0);
-  for (const RandomCode& code : random_codes) {
-    if (code.samples > 1000) continue;
-    const DecodingTable table = random_table(code, random);
-    const Decoder decoder(table);
-    constexpr int pixels = 3000;
-    const std::vector<float> raw = random_pixels(table, pixels, random);
-    const auto k_count = static_cast<std::size_t>(code.measurements);
-    std::vector<std::int32_t> alone(pixels), bin(pixels);
-    for (int i = 0; i < pixels; ++i)
-      decoder.decode_bins(&raw[static_cast<std::size_t>(i) * k_count], 1, &alone[i]);
-    const auto expect_same = [&](const char* how) {
-      for (std::size_t i = 0; i < bin.size(); ++i)
-        ASSERT_EQ(bin[i], alone[i]) << how << ", pixel " << i << " of K = " << code.measurements;
-    };
-    for (const int first : {1, 7, 100}) {
-      std::copy_n(alone.begin(), first, bin.begin());
-      decoder.decode_bins(&raw[static_cast<std::size_t>(first) * k_count], pixels - first,
-                          bin.data() + first);
-      expect_same("from another pixel on");
-    }
-    for (const int threads : {1, 2, 3, 8}) {
-      const ThreadLimit limit(threads);
-      decoder.decode(RawView::interleaved(raw.data(), 30, 100, code.measurements),
-                     {.bin = bin.data()});
-      expect_same("on several threads");
-    }
-    std::vector<float> planar(raw.size());
-    for (std::size_t i = 0; i < pixels; ++i)
-      for (std::size_t k = 0; k < k_count; ++k) planar[k * pixels + i] = raw[i * k_count + k];
-    decoder.decode(RawView::planar(planar.data(), 30, 100, code.measurements), {.bin = bin.data()});
-    expect_same("from planes");
   }
 }
 

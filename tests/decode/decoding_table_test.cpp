@@ -16,8 +16,7 @@ namespace {
 using testing::HasSubstr;
 
 DecodingTable good_table() {
-  const Camera camera = camera_with("paper-10f0");
-  return make_decoding_table(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
+  return decoding_table_of("hamiltonian-k4", camera_with("paper-10f0"));
 }
 
 template <typename Change>
@@ -86,15 +85,6 @@ TEST(WhyNotDecodable, ReturnsTheMessagesOfTheChecks) {
   }
 }
 
-TEST(DecodingTable, AcceptsTwoDifferencesIfAmbientLightCancels) {
-  Eigen::MatrixXd circle(60, 2);
-  for (int n = 0; n < 60; ++n) circle.row(n) << std::cos(M_PI * n / 30), std::sin(M_PI * n / 30);
-  DecodingTable table = make_decoding_table(circle, 10.0);
-  table.ambient_gain.setZero();
-  const Decoder decoder(table);
-  EXPECT_EQ(bins_of(decoder, {0.0f, 1.0f, -3.0f, 0.0f}), (std::vector<std::int32_t>{15, 30}));
-}
-
 TEST(DecodingTable, FollowsTheForwardModel) {
   Camera camera = camera_with("paper-10f0", 2, Readout::difference);
   camera.sensor.dark_current_e_per_s = 40.0;
@@ -110,10 +100,7 @@ TEST(DecodingTable, FollowsTheForwardModel) {
 
 TEST(DecodingTable, ContainsTheLimitsOfRawValues) {
   Camera camera = camera_with("paper-10f0");
-  const auto level = [&] {
-    return make_decoding_table(ForwardModel(build_family("hamiltonian-k3", camera), camera), camera)
-        .saturation_level;
-  };
+  const auto level = [&] { return decoding_table_of("hamiltonian-k3", camera).saturation_level; };
   EXPECT_FALSE(level().has_value());
   camera.sensor.full_well_e = 30000.0;
   EXPECT_EQ(level(), 30000.0f);
@@ -146,27 +133,17 @@ TEST(AmbiguousDepths, AreNoneInGoodCodes) {
   for (const char* code :
        {"sinusoid-k3", "sinusoid-k4", "square-k3", "square-k4", "hamiltonian-k3", "hamiltonian-k4",
         "hamiltonian-k5", "hamiltonian-k6", "multifrequency-k5", "pulsed-multifrequency-k5"})
-    EXPECT_TRUE(ambiguous_depths(
-                    make_decoding_table(ForwardModel(build_family(code, camera), camera), camera))
-                    .empty())
-        << code;
+    EXPECT_TRUE(ambiguous_depths(decoding_table_of(code, camera)).empty()) << code;
 }
 
 TEST(AmbiguousDepths, ExcludeDepthsWithoutContrast) {
   // Gray words of all zeros and all ones resemble ambient light, not each other.
-  const Camera camera = camera_with("paper-30x");
-  const DecodingTable table =
-      make_decoding_table(ForwardModel(build_family("gray-k4", camera), camera), camera);
-  int without_contrast = 0;
-  for (int n = 0; n < table.samples(); ++n)
-    without_contrast +=
-        table.correlation.row(n).maxCoeff() - table.correlation.row(n).minCoeff() < 1e-9;
-  EXPECT_GT(without_contrast, 0);
-  for (const AmbiguousDepths& pair : ambiguous_depths(table)) {
-    EXPECT_GT(table.correlation.row(pair.first_bin).maxCoeff() -
-                  table.correlation.row(pair.first_bin).minCoeff(),
-              1e-9);
-  }
+  const DecodingTable table = decoding_table_of("gray-k4", camera_with("paper-30x"));
+  const Eigen::VectorXd contrast =
+      table.correlation.rowwise().maxCoeff() - table.correlation.rowwise().minCoeff();
+  EXPECT_LT(contrast.minCoeff(), 1e-9);
+  for (const AmbiguousDepths& pair : ambiguous_depths(table))
+    EXPECT_GT(contrast[pair.first_bin], 1e-9);
 }
 
 }  // namespace

@@ -31,15 +31,14 @@ Camera two_frequency_camera() {
   return camera;
 }
 constexpr const char* two_frequencies = "multifrequency-4x4-5x4";
-
-DecodingTable table_of(const char* code, const Camera& camera) {
-  return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
+DecodingTable two_frequency_table() {
+  return decoding_table_of(two_frequencies, two_frequency_camera());
 }
 
 /// Pixels of one row, each at its depth.
 RawFrames pixels_at(const DecodingTable& table, const std::vector<double>& depths_m, double signal,
-                    double ambient, std::uint64_t seed = 1) {
-  RandomStream random(seed, 0);
+                    double ambient) {
+  RandomStream random(1, 0);
   std::vector<float> raw;
   for (const double depth_m : depths_m)
     append_noisy_pixel(table, signal, ambient, wrap(depth_m, table.range_m) / table.bin_m(), random,
@@ -54,8 +53,8 @@ std::vector<double> evenly(double from_m, double to_m, int count) {
 }
 
 DepthImage decoded(DecodeMethod method, const DecodingTable& table, const RawFrames& raw,
-                   const PlaneCorrections& corrections, const DecodeOptions& options = {}) {
-  const std::unique_ptr<FrameBackend> backend = cpu_backend(make_decoder(method, table, options));
+                   const PlaneCorrections& corrections) {
+  const std::unique_ptr<FrameBackend> backend = cpu_backend(make_decoder(method, table));
   const std::unique_ptr<FramePipeline> pipeline = backend->prepare({}, raw.height, raw.width);
   pipeline->submit(view_of_frame(raw, 0));
   DepthImage image(usual_planes(), raw.height, raw.width);
@@ -148,7 +147,7 @@ TEST(DepthLimits, WrapsAreSearchedAsByBruteForce) {
 }
 
 TEST(DepthLimits, BestDepthAnywhereIsTheBestOfItsPartOfTheRange) {
-  const DecodingTable table = table_of(two_frequencies, two_frequency_camera());
+  const DecodingTable table = two_frequency_table();
   const RawFrames raw = frame_of(noisy_pixels(table, 500.0, 3e3, 400, 2), table.measurements());
   for (const DecodeMethod method : methods) {
     const auto decoder = make_decoder(method, table);
@@ -173,7 +172,7 @@ TEST(DepthLimits, BestDepthAnywhereIsTheBestOfItsPartOfTheRange) {
 }
 
 TEST(DepthLimits, WholeRangeChangesNoDepth) {
-  const DecodingTable table = table_of(two_frequencies, two_frequency_camera());
+  const DecodingTable table = two_frequency_table();
   const RawFrames raw = frame_of(noisy_pixels(table, 1e4, 3e3, 300, 3), table.measurements());
   for (const DecodeMethod method : methods) {
     const auto decoder = make_decoder(method, table);
@@ -198,7 +197,7 @@ double share_of_wrong_wraps(const DepthImage& image, const std::vector<double>& 
 }
 
 TEST(DepthLimits, WrapsOutsideAreNoLongerCandidates) {
-  const DecodingTable table = table_of(two_frequencies, two_frequency_camera());
+  const DecodingTable table = two_frequency_table();
   const std::vector<double> depths_m = evenly(1.1, 2.4, 2000);
   const RawFrames raw = pixels_at(table, depths_m, 4000.0, 3e3);
   for (const DecodeMethod method : methods) {
@@ -212,7 +211,7 @@ TEST(DepthLimits, WrapsOutsideAreNoLongerCandidates) {
 }
 
 TEST(DepthLimits, BrightPixelsOutsideAreTooNearOrTooFar) {
-  const DecodingTable table = table_of(two_frequencies, two_frequency_camera());
+  const DecodingTable table = two_frequency_table();
   const RawFrames raw = pixels_at(table, {0.5, 2.0, 3.5, 7.0}, 1e6, 1e4);
   for (const DecodeMethod method : methods) {
     const DepthImage image = decoded(method, table, raw, DepthLimits{1.0, 2.5});
@@ -230,7 +229,7 @@ TEST(DepthLimits, BrightPixelsOutsideAreTooNearOrTooFar) {
 }
 
 TEST(DepthLimits, FewPixelsOutsideAreOkInAnyLight) {
-  const DecodingTable table = table_of(two_frequencies, two_frequency_camera());
+  const DecodingTable table = two_frequency_table();
   const std::vector<double> depths_m = evenly(2.7, 7.3, 2000);
   for (const double signal : {2e3, 4e3, 6e3, 1e4, 1e5}) {
     const RawFrames raw = pixels_at(table, depths_m, signal, 3e3);
@@ -242,7 +241,7 @@ TEST(DepthLimits, FewPixelsOutsideAreOkInAnyLight) {
 
 TEST(DepthLimits, DepthNeverIsALimit) {
   // A sinusoid has one lobe: a pixel just outside the limits has no other candidate.
-  const DecodingTable table = table_of("sinusoid-k4", camera_with("paper-10f0"));
+  const DecodingTable table = decoding_table_of("sinusoid-k4", camera_with("paper-10f0"));
   const std::vector<double> depths_m = evenly(2.5, 3.5, 1000);
   const RawFrames raw = pixels_at(table, depths_m, 1e5, 1e3);
   for (const DecodeMethod method : methods) {
@@ -258,7 +257,7 @@ TEST(DepthLimits, DepthNeverIsALimit) {
 }
 
 TEST(DepthLimits, DarkPixelsAreNotTooFar) {
-  const DecodingTable table = table_of(two_frequencies, two_frequency_camera());
+  const DecodingTable table = two_frequency_table();
   const RawFrames raw = pixels_at(table, std::vector<double>(2000, 1.0), 0.0, 3e3);
   for (const DecodeMethod method : methods) {
     const DepthImage image = decoded(method, table, raw, DepthLimits{1.0, 2.5});
@@ -297,7 +296,7 @@ TEST(DepthLimits, MultipathMethodsKeepToThem) {
 TEST(DepthLimits, HoldForDepthsAfterTheOffsetMap) {
   Camera camera = camera_with("paper-10f0");
   camera.fundamental_frequency_hz = 48e6;
-  const DecodingTable table = table_of("sinusoid-k4", camera);
+  const DecodingTable table = decoding_table_of("sinusoid-k4", camera);
   const RawFrames raw = pixels_at(table, {0.02, 0.12, 2.97, 3.03, 3.1}, 1e7, 1e3);
   PlaneCorrections corrections{.maps = {.delay_offset_m = Image<float>(1, 5, 0.05f), .gain = {}}};
   const DepthImage plain = decoded(DecodeMethod::zncc, table, raw, corrections);
@@ -316,9 +315,9 @@ TEST(DepthLimits, HoldForDepthsAfterTheOffsetMap) {
 
 TEST(DepthLimits, OfACameraAreItsWorkingDistanceUnlessOthersAreGiven) {
   Camera camera = two_frequency_camera();
-  EXPECT_FALSE(depth_limits(table_of(two_frequencies, camera), {}, {}));
+  EXPECT_FALSE(depth_limits(decoding_table_of(two_frequencies, camera), {}, {}));
   camera.operating.working_distance_m = {0.4, 3.0};
-  const DecodingTable table = table_of(two_frequencies, camera);
+  const DecodingTable table = decoding_table_of(two_frequencies, camera);
   const auto limits_of = [&](std::optional<double> min_m, std::optional<double> max_m) {
     const DepthLimits limits = depth_limits(table, min_m, max_m).value();
     return std::pair(limits.min_m, limits.max_m);
@@ -330,7 +329,7 @@ TEST(DepthLimits, OfACameraAreItsWorkingDistanceUnlessOthersAreGiven) {
 }
 
 TEST(DepthLimits, ImpossibleLimitsAreRejectedByName) {
-  DecodingTable table = table_of(two_frequencies, two_frequency_camera());
+  DecodingTable table = two_frequency_table();
   const auto message_of = [&](std::optional<double> min_m, std::optional<double> max_m) {
     try {
       depth_limits(table, min_m, max_m);

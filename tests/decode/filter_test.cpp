@@ -23,33 +23,15 @@
 namespace tofsmith {
 namespace {
 
-struct Seen {
-  double depth_bin = 0.0;
-  double signal_e_per_s = 0.0;
-};
-using SceneOfPixels = std::function<Seen(int row, int column)>;
-
-RawFrames frame_seen(const DecodingTable& table, int height, int width, const SceneOfPixels& scene,
-                     double ambient_e_per_s = 1e4, std::uint64_t seed = 1) {
-  return frame_by_pixel(table.measurements(), height, width, seed,
-                        [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
-                          const Seen seen = scene(y, x);
-                          append_noisy_pixel(table, seen.signal_e_per_s, ambient_e_per_s,
-                                             seen.depth_bin, random, raw);
-                        });
-}
-
-DepthImage decoded(const Decoder& decoder, const FilteredFrame& filtered) {
-  DepthImage image(filtered.height(), filtered.width());
-  decoder.decode(filtered.view(), DecodedView::of(image));
-  return image;
-}
-
 double bin_error(const DecodingTable& table, float depth_m, double depth_bin) {
   return std::remainder(depth_m / table.bin_m() - depth_bin, table.bin_count());
 }
 
-FilterOptions options_of(FilterStrength strength) { return FilterOptions::of(strength); }
+class FilterOfFrames : public testing::Test {
+ protected:
+  DecodeSetup setup{"hamiltonian-k4", camera_with("paper-10f0")};
+  const DecodingTable& table = setup.decoder.table();
+};
 
 /// Reference of the first window of 5 x 5, pair by pair in double.
 std::vector<double> reference_window(const DecodingTable& table, const RawFrames& raw,
@@ -108,7 +90,7 @@ TEST(Filter, FirstWindowEqualsTheReference) {
   const RawFrames raw = frame_seen(table, 21, 37, [&](int row, int column) {
     return Seen{row < 10 ? 40.0 + column : 150.0, 2e4 + 1e3 * column};
   });
-  const FilterOptions options = options_of(FilterStrength::light);
+  const FilterOptions options = FilterOptions::of(FilterStrength::light);
   const std::vector<double> expected = reference_window(table, raw, options.max_difference_sigma);
   for_each_target([&] {
     const RawFrames filtered = Filter(table, options).apply(raw).values();
@@ -118,15 +100,14 @@ TEST(Filter, FirstWindowEqualsTheReference) {
   });
 }
 
-TEST(Filter, SumsAreUnbiasedForAnyAlbedo) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, SumsAreUnbiasedForAnyAlbedo) {
   RandomStream albedo(7, 0);
   const RawFrames raw = frame_seen(table, 96, 96, [&](int, int) {
     return Seen{70.3, 1e4 + 9e4 * albedo.uniform()};
   });
   for (const FilterStrength strength : all_filter_strengths) {
-    const DepthImage image = decoded(setup.decoder, Filter(table, options_of(strength)).apply(raw));
+    const DepthImage image =
+        decode_filtered(setup.decoder, Filter(table, FilterOptions::of(strength)).apply(raw));
     double sum = 0.0, squares = 0.0;
     for (const float depth : image.depth_m.pixels) {
       const double error = bin_error(table, depth, 70.3);
@@ -140,9 +121,7 @@ TEST(Filter, SumsAreUnbiasedForAnyAlbedo) {
   }
 }
 
-TEST(Filter, IsInvariantToFlipsAndRotations) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, IsInvariantToFlipsAndRotations) {
   const RawFrames raw = frame_seen(table, 40, 52, [&](int row, int column) {
     return Seen{column < 20 ? 60.0 : 100.0 + 0.2 * row, 5e4};
   });
@@ -160,9 +139,7 @@ TEST(Filter, IsInvariantToFlipsAndRotations) {
         << i;
 }
 
-TEST(Filter, ErrorOnAConstantPlaneFallsWithTheNumberOfAveragedPixels) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, ErrorOnAConstantPlaneFallsWithTheNumberOfAveragedPixels) {
   const RawFrames raw = frame_seen(table, 128, 128, [&](int, int) { return Seen{120.4, 3e4}; });
   const auto deviation = [&](const DepthImage& image) {
     double squares = 0.0;
@@ -173,25 +150,23 @@ TEST(Filter, ErrorOnAConstantPlaneFallsWithTheNumberOfAveragedPixels) {
     return std::sqrt(squares / count);
   };
   const double alone = deviation(setup.decoder.decode(raw));
-  const FilteredFrame light = Filter(table, options_of(FilterStrength::light)).apply(raw);
+  const FilteredFrame light = Filter(table, FilterOptions::of(FilterStrength::light)).apply(raw);
   double added = 0.0;
   for (const float n : light.averaged().pixels) added += n / (128 * 128);
   EXPECT_GT(added, 18.5);
-  EXPECT_NEAR(deviation(decoded(setup.decoder, light)), alone / std::sqrt(added),
+  EXPECT_NEAR(deviation(decode_filtered(setup.decoder, light)), alone / std::sqrt(added),
               0.15 * alone / std::sqrt(added));
   const FilteredFrame normal = Filter(table).apply(raw);
   EXPECT_GT(normal.averaged()(64, 64), 330.0f);  // 625 without the noise of slopes
-  EXPECT_LT(deviation(decoded(setup.decoder, normal)), 1.6 * alone / 25);
+  EXPECT_LT(deviation(decode_filtered(setup.decoder, normal)), 1.6 * alone / 25);
 }
 
-TEST(Filter, SlantedPlanesKeepTheirDepth) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, SlantedPlanesKeepTheirDepth) {
   const auto depth = [](int row, int column) { return 60.0 + 0.31 * column + 0.12 * row; };
   const RawFrames raw = frame_seen(table, 96, 160, [&](int row, int column) {
     return Seen{depth(row, column), 1e5};
   });
-  const DepthImage image = decoded(setup.decoder, Filter(table).apply(raw));
+  const DepthImage image = decode_filtered(setup.decoder, Filter(table).apply(raw));
   double at_left = 0.0, all = 0.0;
   for (int y = 0; y < 96; ++y)
     for (int x = 0; x < 160; ++x) {
@@ -203,9 +178,7 @@ TEST(Filter, SlantedPlanesKeepTheirDepth) {
   EXPECT_NEAR(at_left, 0.0, 0.1);  // all neighbours are farther
 }
 
-TEST(Filter, KeepsAnEdgeOfFiveDeviations) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, KeepsAnEdgeOfFiveDeviations) {
   const auto flat = frame_seen(table, 32, 32, [&](int, int) { return Seen{80.0, 3e4}; });
   const DepthImage alone = setup.decoder.decode(flat);
   double sigma = 0.0;
@@ -215,7 +188,7 @@ TEST(Filter, KeepsAnEdgeOfFiveDeviations) {
   const RawFrames raw = frame_seen(table, 64, 80, [&](int, int column) {
     return Seen{depth(column), 3e4};
   });
-  const DepthImage image = decoded(setup.decoder, Filter(table).apply(raw));
+  const DepthImage image = decode_filtered(setup.decoder, Filter(table).apply(raw));
   int on_wrong_side = 0;
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 80; ++x) {
@@ -253,13 +226,13 @@ TEST(Filter, GivesNoDepthWhereThereIsNoLight) {
       });
       const FoundShares alone = found_shares(setup.decoder.decode(raw), is_dark);
       for (const FilterOptions& options :
-           {FilterOptions{.slope_rounds = 0}, options_of(FilterStrength::light),
-            options_of(FilterStrength::normal), options_of(FilterStrength::strong)}) {
+           {FilterOptions{.slope_rounds = 0}, FilterOptions::of(FilterStrength::light),
+            FilterOptions::of(FilterStrength::normal), FilterOptions::of(FilterStrength::strong)}) {
         const std::string setting =
             fmt::format("windows {}, slope rounds {}, S = {}, scene {}", options.windows,
                         options.slope_rounds, signal, &is_dark - scenes.data());
-        const FoundShares found =
-            found_shares(decoded(setup.decoder, Filter(table, options).apply(raw)), is_dark);
+        const FoundShares found = found_shares(
+            decode_filtered(setup.decoder, Filter(table, options).apply(raw)), is_dark);
         // In dim light some pixels next to an edge cannot be distinguished from those with light.
         const double at_rims = signal < 5e3 ? 0.02 : signal < 5e4 ? 0.01 : 0.003;
         EXPECT_LE(found.dark, 1.2 * alone.dark + at_rims) << setting;
@@ -268,9 +241,7 @@ TEST(Filter, GivesNoDepthWhereThereIsNoLight) {
     }
 }
 
-TEST(Filter, DarkPixelsBetweenTwoSurfacesAreWrongNoMoreOftenThanUnfilteredOnes) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, DarkPixelsBetweenTwoSurfacesAreWrongNoMoreOftenThanUnfilteredOnes) {
   constexpr int line = 32;
   const auto depth = [](int row) { return row < line ? 96.0 : 44.4; };
   const RawFrames raw = frame_seen(table, 64, 400, [&](int row, int) {
@@ -285,7 +256,8 @@ TEST(Filter, DarkPixelsBetweenTwoSurfacesAreWrongNoMoreOftenThanUnfilteredOnes) 
   };
   const int unfiltered = wrong(setup.decoder.decode(raw));
   for (const FilterStrength strength : {FilterStrength::normal, FilterStrength::strong}) {
-    const DepthImage image = decoded(setup.decoder, Filter(table, options_of(strength)).apply(raw));
+    const DepthImage image =
+        decode_filtered(setup.decoder, Filter(table, FilterOptions::of(strength)).apply(raw));
     EXPECT_LE(wrong(image), unfiltered) << name_of(strength);
     for (int x = 0; x < 400; ++x) EXPECT_EQ(image.status(line + 2, x), PixelStatus::ok) << x;
   }
@@ -304,8 +276,8 @@ TEST(Filter, IgnoresAndKeepsInvalidAndSaturatedPixels) {
   for (int y = 30; y < 33; ++y)
     for (int x = 5; x < 9; ++x) raw.values[static_cast<std::size_t>((y * 48 + x) * 4)] = 1e4f;
   for (const FilterStrength strength : all_filter_strengths) {
-    const FilteredFrame filtered = Filter(table, options_of(strength)).apply(raw);
-    const DepthImage image = decoded(decoder, filtered);
+    const FilteredFrame filtered = Filter(table, FilterOptions::of(strength)).apply(raw);
+    const DepthImage image = decode_filtered(decoder, filtered);
     for (int y = 0; y < 48; ++y)
       for (int x = 0; x < 48; ++x) {
         const bool is_invalid = y >= 20 && y < 26 && x >= 20 && x < 26;
@@ -323,9 +295,7 @@ TEST(Filter, IgnoresAndKeepsInvalidAndSaturatedPixels) {
   }
 }
 
-TEST(Filter, IgnoresAndKeepsExcludedPixels) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, IgnoresAndKeepsExcludedPixels) {
   RawFrames raw = frame_seen(table, 48, 48, [](int, int) { return Seen{55.0, 5e4}; });
   Image<std::uint8_t> left_out(48, 48);
   for (int y = 4; y < 44; ++y) left_out(y, 20) = 1;
@@ -354,10 +324,7 @@ TEST(Filter, IgnoresAndKeepsExcludedPixels) {
 
 TEST(Filter, WeighsMeansByTheNumberOfFramesAveraged) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
-    Camera camera = camera_with("paper-10f0");
-    camera.sensor.readout = readout;
-    camera.sensor.taps = 2;
-    const DecodeSetup setup("hamiltonian-k4", camera);
+    const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0", 2, readout));
     const DecodingTable& table = setup.decoder.table();
     constexpr int count = 4;
     const auto plane = [](int, int) { return Seen{55.0, 5e4}; };
@@ -385,13 +352,11 @@ TEST(Filter, WeighsMeansByTheNumberOfFramesAveraged) {
   }
 }
 
-TEST(Filter, IsBitIdenticalForAnyNumberOfThreadsAndLayout) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, IsBitIdenticalForAnyNumberOfThreadsAndLayout) {
   const RawFrames raw = frame_seen(table, 150, 70, [](int row, int column) {
     return Seen{20.0 + 0.3 * row + (column > 33 ? 40.0 : 0.0), 3e4};
   });
-  const Filter filter(table, options_of(FilterStrength::strong));
+  const Filter filter(table, FilterOptions::of(FilterStrength::strong));
   const FilteredFrame expected = filter.apply(raw);
   const std::vector<float> values = expected.values().values;
   for (const int threads : {1, 2, 3, 8}) {
@@ -409,9 +374,7 @@ TEST(Filter, IsBitIdenticalForAnyNumberOfThreadsAndLayout) {
   EXPECT_EQ(filtered.values().values, values);
 }
 
-TEST(Filter, ReusesTheMemoryOfAFrame) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, ReusesTheMemoryOfAFrame) {
   const Filter filter(table);
   FilteredFrame reused;
   for (const int side : {40, 40, 7, 1, 33}) {
@@ -427,28 +390,21 @@ TEST(Filter, ReusesTheMemoryOfAFrame) {
 }
 
 TEST(Filter, SupportsAnyCodeAndCamera) {
-  struct Case {
-    const char* code;
-    Camera camera;
-  };
   Camera counts = camera_with("paper-10f0");
   counts.sensor.adc_bits = 12;
   counts.sensor.gain_e_per_dn = 20.0;
   counts.sensor.black_level_dn = 40.0;
-  for (const Case& c :
-       {Case{"hamiltonian-k3", camera_with("paper-10f0")},
-        Case{"sinusoid-k4", camera_with("paper-10f0")},
-        Case{"multifrequency-k5", camera_with("paper-10f0")}, Case{"hamiltonian-k4", counts},
-        Case{"square-k4", camera_with("paper-10f0", 2, Readout::difference)}}) {
-    SCOPED_TRACE(c.code);
-    const DecodeSetup setup(c.code, c.camera);
+  const auto plane = [](int, int) { return Seen{66.0, 1e5}; };
+  for (const auto& [code, camera] :
+       {std::pair{"hamiltonian-k3", camera_with("paper-10f0")},
+        {"sinusoid-k4", camera_with("paper-10f0")},
+        {"multifrequency-k5", camera_with("paper-10f0")},
+        {"hamiltonian-k4", counts},
+        {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}}) {
+    SCOPED_TRACE(code);
+    const DecodeSetup setup(code, camera);
     const DecodingTable& table = setup.decoder.table();
-    const RawFrames raw = frame_seen(
-        table, 64, 64,
-        [](int, int) {
-          return Seen{66.0, 1e5};
-        },
-        1e3);
+    const RawFrames raw = frame_seen(table, 64, 64, plane, 1e3);
     const auto error = [&](const DepthImage& image) {
       double sum = 0.0;
       for (const float depth : image.depth_m.pixels)
@@ -456,21 +412,19 @@ TEST(Filter, SupportsAnyCodeAndCamera) {
       return sum;
     };
     const double alone = error(setup.decoder.decode(raw));
-    EXPECT_LT(error(decoded(setup.decoder, Filter(table).apply(raw))), 0.12 * alone);
+    EXPECT_LT(error(decode_filtered(setup.decoder, Filter(table).apply(raw))), 0.12 * alone);
   }
 }
 
 TEST(Filter, NeedsMemoryOfAtMostSevenFrames) {
   constexpr int height = 480, width = 640, measurements = 4;
   const double frame_bytes = sizeof(float) * double{measurements} * height * width;
-  const auto bytes =
-      Filter::memory_bytes(options_of(FilterStrength::normal), height, width, measurements, 1);
+  const auto bytes = Filter::memory_bytes(FilterOptions::of(FilterStrength::normal), height, width,
+                                          measurements, 1);
   EXPECT_LE(static_cast<double>(bytes), 7 * frame_bytes);
 }
 
-TEST(Filter, RejectsInvalidInputs) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
+TEST_F(FilterOfFrames, RejectsInvalidInputs) {
   EXPECT_THROW(Filter(table, {.windows = 0}), InvalidArgument);
   EXPECT_THROW(Filter(table, {.slope_rounds = -1}), InvalidArgument);
   EXPECT_THROW(Filter(table, {.trusted_pixels = 0.5}), InvalidArgument);
@@ -492,7 +446,7 @@ TEST(Filter, KeepsFramesWithoutUsablePixels) {
   raw.values.assign(180, std::numeric_limits<float>::infinity());
   const FilteredFrame filtered = Filter(setup.decoder.table()).apply(raw);
   EXPECT_EQ(filtered.values().values, raw.values);
-  for (const PixelStatus status : decoded(setup.decoder, filtered).status.pixels)
+  for (const PixelStatus status : decode_filtered(setup.decoder, filtered).status.pixels)
     EXPECT_EQ(status, PixelStatus::invalid);
 }
 

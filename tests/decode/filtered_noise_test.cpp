@@ -25,19 +25,11 @@ class FilteredNoise : public testing::TestWithParam<std::tuple<FilterStrength, c
  protected:
   DepthImage decode_plane(double signal, double first_bin, unsigned seed) const {
     const DecodingTable& table = setup.decoder.table();
-    const RawFrames raw =
-        frame_by_pixel(table.measurements(), side, side, seed,
-                       [&](int y, int x, RandomStream& random, std::vector<float>& values) {
-                         const double depth_bin = first_bin + 0.02 * x + 0.01 * y;
-                         append_noisy_pixel(table, signal, 1e4,
-                                            std::fmod(depth_bin, table.samples()), random, values);
-                       });
-    FilteredFrame filtered;
-    filter.apply(view_of_frame(raw, 0), filtered);
-    DepthImage image(side, side);
-    image.residual = image.depth_m;
-    setup.decoder.decode(filtered.view(), DecodedView::of(image));
-    return image;
+    const auto plane = [&](int y, int x) {
+      return Seen{std::fmod(first_bin + 0.02 * x + 0.01 * y, table.samples()), signal};
+    };
+    const RawFrames raw = frame_seen(table, side, side, plane, 1e4, seed);
+    return decode_filtered(setup.decoder, filter.apply(raw));
   }
 
   DecodeSetup setup{std::get<1>(GetParam()), camera_with("paper-10f0")};
@@ -96,45 +88,28 @@ INSTANTIATE_TEST_SUITE_P(Filters, FilteredNoise,
 
 // Noise measured in the frame.
 
-/// A slanted surface with stripes of albedo 12 pixels wide and a depth step.
-RawFrames striped_frame(const DecodingTable& table) {
-  return frame_by_pixel(table.measurements(), 96, 128, 7,
-                        [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
-                          const double signal = x / 12 % 2 == 0 ? 3e4 : 1e4;
-                          const double depth_bin = (y < 48 ? 60.0 : 110.0) + 0.05 * x;
-                          append_noisy_pixel(table, signal, 1e4, depth_bin, random, raw);
-                        });
-}
-
 TEST(MeasuredNoise, IsThatOfTheCameraOnScenesWithEdgesAndSlopes) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const RawFrames raw = striped_frame(table);
-  const auto ratio = measured_noise_ratio(Filter(table), view_of_frame(raw, 0));
+  const DecodingTable table = decoding_table_of("hamiltonian-k4", camera_with("paper-10f0"));
+  const Filter filter(table);
+  // A slanted surface with stripes of albedo 12 pixels wide and a depth step.
+  const auto stripes = [](int y, int x) {
+    return Seen{(y < 48 ? 60.0 : 110.0) + 0.05 * x, x / 12 % 2 == 0 ? 3e4 : 1e4};
+  };
+  const RawFrames raw = frame_seen(table, 96, 128, stripes, 1e4, 7);
+  RawView view = view_of_frame(raw, 0);
+  const auto ratio = measured_noise_ratio(filter, view);
   ASSERT_TRUE(ratio.has_value());
   EXPECT_NEAR(*ratio, 1.0, 0.15);
-}
-
-TEST(MeasuredNoise, FindsThatTheCameraHasTheWrongNoise) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const RawFrames raw = striped_frame(table);
-  RawView view = view_of_frame(raw, 0);
   const Image<float> averaged(96, 128, 25.0f);  // means would have a fifth of the noise
   view.averaged = averaged.pixels.data();
-  const auto ratio = measured_noise_ratio(Filter(table), view);
-  ASSERT_TRUE(ratio.has_value());
-  EXPECT_NEAR(*ratio, 5.0, 0.75);
+  const auto of_means = measured_noise_ratio(filter, view);
+  ASSERT_TRUE(of_means.has_value());
+  EXPECT_NEAR(*of_means, 5.0, 0.75);
 }
 
 TEST(MeasuredNoise, IsUnknownInSmallFrames) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const RawFrames raw =
-      frame_by_pixel(table.measurements(), 8, 8, 7,
-                     [&](int, int, RandomStream& random, std::vector<float>& values) {
-                       append_noisy_pixel(table, 1e4, 1e4, 60.0, random, values);
-                     });
+  const DecodingTable table = decoding_table_of("hamiltonian-k4", camera_with("paper-10f0"));
+  const RawFrames raw = frame_seen(table, 8, 8, [](int, int) { return Seen{60.0, 1e4}; });
   EXPECT_FALSE(measured_noise_ratio(Filter(table), view_of_frame(raw, 0)).has_value());
 }
 

@@ -27,9 +27,19 @@ MeasuredTable sweep_of(const ForwardModel& model, const Camera& camera) {
 DepthImage decoded(const DecodingTable& table, const RawFrames& raw, FilteredFrame& filtered,
                    FilterStrength strength) {
   Filter(table, FilterOptions::of(strength)).apply(view_of_frame(raw, 0), filtered);
-  DepthImage image(raw.height, raw.width);
-  Decoder(table).decode(filtered.view(), DecodedView::of(image));
-  return image;
+  return decode_filtered(Decoder(table), filtered);
+}
+
+/// Expects the same conversion, exposures, constant noise and bins.
+void expect_same_decoding(const DecodingTable& table, const DecodingTable& code, double ambient) {
+  EXPECT_TRUE(table.correlation.isApprox(code.correlation, 1e-12));
+  EXPECT_EQ(table.exposure_s, code.exposure_s);
+  EXPECT_EQ(table.gain_e_per_raw, code.gain_e_per_raw);
+  EXPECT_EQ(table.black_level, code.black_level);
+  EXPECT_LT((table.dark_electrons - code.dark_electrons).norm(), 1e-9);
+  EXPECT_TRUE(table.constant_variance_e2.isApprox(code.constant_variance_e2, 1e-12));
+  const std::vector<float> raw = noisy_pixels(code, 3e4, ambient, 2000, 8);
+  EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
 }
 
 TEST(MeasuredTable, ASweepOfACodeDecodesLikeTheCode) {
@@ -44,21 +54,14 @@ TEST(MeasuredTable, ASweepOfACodeDecodesLikeTheCode) {
     const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
     const DecodingTable code = make_decoding_table(model, camera);
     const DecodingTable table = make_decoding_table(sweep_of(model, camera), camera);
-    EXPECT_TRUE(table.correlation.isApprox(code.correlation, 1e-12));
+    expect_same_decoding(table, code, 1e4);
     EXPECT_LT((table.ambient_gain - code.ambient_gain).norm(), 1e-9);
-    EXPECT_EQ(table.exposure_s, code.exposure_s);
-    EXPECT_LT((table.dark_electrons - code.dark_electrons).norm(), 1e-9);
-    EXPECT_TRUE(table.constant_variance_e2.isApprox(code.constant_variance_e2, 1e-12));
-    EXPECT_EQ(table.gain_e_per_raw, code.gain_e_per_raw);
-    EXPECT_EQ(table.black_level, code.black_level);
     EXPECT_EQ(table.saturation_level, code.saturation_level);
     EXPECT_EQ(table.range_m, code.range_m);
     EXPECT_EQ(table.shot_correlation.size(), code.shot_correlation.size());
     EXPECT_TRUE(table.shot().isApprox(code.shot(), 1e-9));
     EXPECT_TRUE(table.shot_ambient().isApprox(code.shot_ambient(), 1e-9));
     EXPECT_TRUE(table.shot_dark().isApprox(code.shot_dark(), 1e-9));
-    const std::vector<float> raw = noisy_pixels(code, 3e4, 1e4, 2000, 8);
-    EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
   }
 }
 
@@ -79,18 +82,11 @@ TEST(MeasuredTable, ASweepOfAMixerDecodesLikeItsCode) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("whose measurements are signed")));
   measured.differences = true;
   const DecodingTable table = make_decoding_table(measured, camera);
-  EXPECT_TRUE(table.correlation.isApprox(code.correlation, 1e-12));
-  EXPECT_EQ(table.exposure_s, code.exposure_s);
-  EXPECT_EQ(table.gain_e_per_raw, code.gain_e_per_raw);
-  EXPECT_EQ(table.black_level, code.black_level);
-  EXPECT_LT((table.dark_electrons - code.dark_electrons).norm(), 1e-9);
   // A mixer has one readout and dark current per number, a difference of buckets has two.
-  EXPECT_TRUE(table.constant_variance_e2.isApprox(code.constant_variance_e2, 1e-12));
+  expect_same_decoding(table, code, 0.0);
   EXPECT_TRUE(table.shot_dark_electrons.isApprox(code.shot_dark_electrons, 1e-9));
   // The shot noise of a signed column is at least that of its absolute value.
   EXPECT_TRUE((table.shot_correlation.array() >= measured.correlation.array().abs() - 1e-12).all());
-  const std::vector<float> raw = noisy_pixels(code, 3e4, 0.0, 2000, 8);
-  EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
 }
 
 // With separate taps the total light, and thus the noise, does not depend on the omitted constant.
@@ -100,11 +96,8 @@ TEST(MeasuredTable, ConstantsAlongAmbientLightChangeNoDepth) {
   const MeasuredTable measured = sweep_of(model, camera);
   const DecodingTable as_is = make_decoding_table(measured, camera);
   constexpr int side = 32;
-  const RawFrames raw = frame_by_pixel(
-      as_is.measurements(), side, side, 2,
-      [&](int y, int x, RandomStream& random, std::vector<float>& values) {
-        append_noisy_pixel(as_is, 2e3, 1e4, 55.0 + 0.02 * x + 0.01 * y, random, values);
-      });
+  const auto plane = [](int y, int x) { return Seen{55.0 + 0.02 * x + 0.01 * y, 2e3}; };
+  const RawFrames raw = frame_seen(as_is, side, side, plane, 1e4, 2);
   for (const double constant : {0.05, 0.5, 3.0}) {
     MeasuredTable lower = measured;
     lower.correlation.rowwise() -= constant * measured.ambient_gain.transpose();

@@ -57,13 +57,9 @@ std::vector<RawFrames> bracket(double least_e, double most_e, int width, std::ui
   return frames;
 }
 
-RawView view_of_frame(const RawFrames& raw) {
-  return RawView::interleaved(raw.values.data(), raw.height, raw.width, raw.measurements);
-}
-
 MergedExposures merged(const std::vector<RawFrames>& frames) {
   std::vector<RawView> views;
-  for (const RawFrames& raw : frames) views.push_back(view_of_frame(raw));
+  for (const RawFrames& raw : frames) views.push_back(view_of_frame(raw, 0));
   MergedExposures result;
   merge_exposures(views, exposures, exposed_table(), result);
   return result;
@@ -110,7 +106,7 @@ TEST(MergeExposures, DepthIsBetterThanInAnySingleExposure) {
   };
   const MergedExposures found = merged(frames);
   const double together_m = rms_m(found.view());
-  for (const RawFrames& raw : frames) EXPECT_LT(together_m, 0.7 * rms_m(view_of_frame(raw)));
+  for (const RawFrames& raw : frames) EXPECT_LT(together_m, 0.7 * rms_m(view_of_frame(raw, 0)));
 }
 
 TEST(MergeExposures, ASingleUsableExposureIsUnchanged) {
@@ -145,7 +141,7 @@ TEST(MergeExposures, RejectsInvalidExposures) {
   refuses({2.0, 4.0}, "must contain 1: the shortest exposure");
   refuses({1.0, 0.0}, "each must be in [1, 1e6]");
   refuses({1.0, NAN}, "each must be in [1, 1e6]");
-  const std::vector<RawView> one{view_of_frame(frames[0])};
+  const std::vector<RawView> one{view_of_frame(frames[0], 0)};
   MergedExposures result;
   EXPECT_THROW(merge_exposures(one, exposures, exposed_table(), result), std::invalid_argument);
 }

@@ -17,17 +17,17 @@ namespace {
 
 constexpr int height = 40, width = 60, edge = 30;
 
-struct Seen {
+struct Mixture {
   double depth_bin = 0.0, signal_e_per_s = 1e5;
   double second_bin = 0.0, second_e_per_s = 0.0;
 };
-using SceneOfPixels = std::function<Seen(int row, int column)>;
+using SceneOfMixtures = std::function<Mixture(int row, int column)>;
 
-RawFrames frame_seen(const DecodingTable& table, const SceneOfPixels& scene) {
+RawFrames frame_of_mixtures(const DecodingTable& table, const SceneOfMixtures& scene) {
   return frame_by_pixel(
       table.measurements(), height, width, 1,
       [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
-        const Seen seen = scene(y, x);
+        const Mixture seen = scene(y, x);
         std::vector<float> second;
         append_noisy_pixel(table, seen.signal_e_per_s, 1e4, seen.depth_bin, random, raw);
         append_noisy_pixel(table, seen.second_e_per_s, 0.0, seen.second_bin, random, second);
@@ -39,7 +39,7 @@ RawFrames frame_seen(const DecodingTable& table, const SceneOfPixels& scene) {
 }
 
 /// Near surface on the left, far on the right, one mixed column.
-Seen edge_between(int column) {
+Mixture edge_between(int column) {
   if (column == edge) return {70.0, 0.6e5, 120.0, 0.4e5};
   return {column < edge ? 70.0 : 120.0};
 }
@@ -56,9 +56,29 @@ double share_marked(const DepthImage& image) {
          static_cast<double>(image.status.size());
 }
 
-DecodeSetup setup_of(const std::string& code = "hamiltonian-k5") {
-  return DecodeSetup(code, camera_with("paper-10f0"));
+struct MarkedCounts {
+  int at_edge = 0, elsewhere = 0;
+};
+
+MarkedCounts count_marked(const DepthImage& image) {
+  MarkedCounts counts;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (image.status(y, x) == PixelStatus::mixed)
+        ++(x == edge ? counts.at_edge : counts.elsewhere);
+  return counts;
 }
+
+class MixedPixelsOfFrames : public testing::Test {
+ protected:
+  DepthImage marked_scene(const SceneOfMixtures& scene) const {
+    return marked(setup, frame_of_mixtures(table, scene));
+  }
+
+  DecodeSetup setup{"hamiltonian-k5", camera_with("paper-10f0")};
+  const DecodingTable& table = setup.decoder.table();
+  const RawFrames edge_frame = frame_of_mixtures(table, [](int, int x) { return edge_between(x); });
+};
 
 TEST(MixedPixels, NamesAreReadBack) {
   for (const MixedPixels mixed : all_mixed_pixels)
@@ -66,59 +86,40 @@ TEST(MixedPixels, NamesAreReadBack) {
   EXPECT_THROW(parse_mixed_pixels("near"), std::invalid_argument);
 }
 
-TEST(MixedPixels, MixturesOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames raw =
-      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
-  const DepthImage before = setup.decoder.decode(raw), image = marked(setup, raw);
-  int found = 0, elsewhere = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const bool is_mixed = image.status(y, x) == PixelStatus::mixed;
-      (x == edge ? found : elsewhere) += is_mixed ? 1 : 0;
-      EXPECT_EQ(image.depth_m(y, x), before.depth_m(y, x));
-      if (!is_mixed) {
-        EXPECT_EQ(image.status(y, x), before.status(y, x));
-      }
+TEST_F(MixedPixelsOfFrames, MixturesOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
+  const DepthImage before = setup.decoder.decode(edge_frame), image = marked(setup, edge_frame);
+  EXPECT_EQ(image.depth_m.pixels, before.depth_m.pixels);
+  for (std::size_t i = 0; i < image.status.size(); ++i)
+    if (image.status.pixels[i] != PixelStatus::mixed) {
+      EXPECT_EQ(image.status.pixels[i], before.status.pixels[i]);
     }
-  EXPECT_GE(found, height - 2);
-  EXPECT_LE(elsewhere, height * width / 200);
+  EXPECT_GE(count_marked(image).at_edge, height - 2);
+  EXPECT_LE(count_marked(image).elsewhere, height * width / 200);
 }
 
-TEST(MixedPixels, TheMiddleOfARibbonFivePixelsWideIsFound) {
-  const DecodeSetup setup = setup_of();
-  const DepthImage image = marked(setup, frame_seen(setup.decoder.table(), [](int, int x) {
-                                    const double share = 0.5 + 0.1 * (x - edge);
-                                    if (x < edge - 2) return Seen{70.0};
-                                    if (x > edge + 2) return Seen{120.0};
-                                    return Seen{70.0, (1 - share) * 1e5, 120.0, share * 1e5};
-                                  }));
-  int found = 0;
-  for (int y = 0; y < height; ++y) found += image.status(y, edge) == PixelStatus::mixed ? 1 : 0;
-  EXPECT_GE(found, height * 8 / 10);
+TEST_F(MixedPixelsOfFrames, TheMiddleOfARibbonFivePixelsWideIsFound) {
+  const DepthImage image = marked_scene([](int, int x) {
+    const double share = 0.5 + 0.1 * (x - edge);
+    if (x < edge - 2) return Mixture{70.0};
+    if (x > edge + 2) return Mixture{120.0};
+    return Mixture{70.0, (1 - share) * 1e5, 120.0, share * 1e5};
+  });
+  EXPECT_GE(count_marked(image).at_edge, height * 8 / 10);
 }
 
-TEST(MixedPixels, ASmallShareOfAnotherSurfaceIsFound) {
-  const DecodeSetup setup = setup_of();
-  const DepthImage image =
-      marked(setup, frame_seen(setup.decoder.table(), [](int, int x) {
-               return x == edge ? Seen{70.0, 1e6, 120.0, 3e4} : Seen{x < edge ? 70.0 : 120.0, 1e6};
-             }));
-  int found = 0;
-  for (int y = 0; y < height; ++y) {
-    EXPECT_NEAR(image.depth_m(y, edge) / setup.decoder.table().bin_m(), 70.0, 0.48) << y;
-    found += image.status(y, edge) == PixelStatus::mixed ? 1 : 0;
-  }
-  EXPECT_GE(found, height * 9 / 10);
-  EXPECT_LE(share_marked(image) * height * width - found, height * width / 100);
+TEST_F(MixedPixelsOfFrames, ASmallShareOfAnotherSurfaceIsFound) {
+  const DepthImage image = marked_scene([](int, int x) {
+    return x == edge ? Mixture{70.0, 1e6, 120.0, 3e4} : Mixture{x < edge ? 70.0 : 120.0, 1e6};
+  });
+  for (int y = 0; y < height; ++y)
+    EXPECT_NEAR(image.depth_m(y, edge) / table.bin_m(), 70.0, 0.48) << y;
+  EXPECT_GE(count_marked(image).at_edge, height * 9 / 10);
+  EXPECT_LE(count_marked(image).elsewhere, height * width / 100);
 }
 
-TEST(MixedPixels, SnappedDepthIsThatOfAPixelNearby) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames raw =
-      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
-  const DepthImage before = setup.decoder.decode(raw);
-  const DepthImage image = marked(setup, raw, MixedPixels::snap);
+TEST_F(MixedPixelsOfFrames, SnappedDepthIsThatOfAPixelNearby) {
+  const DepthImage before = setup.decoder.decode(edge_frame);
+  const DepthImage image = marked(setup, edge_frame, MixedPixels::snap);
   for (int y = 0; y < height; ++y) {
     if (image.status(y, edge) != PixelStatus::mixed) continue;
     bool is_neighbours = false;
@@ -128,15 +129,12 @@ TEST(MixedPixels, SnappedDepthIsThatOfAPixelNearby) {
           is_neighbours |= image.depth_m(y, edge) == before.depth_m(y + dy, edge + dx);
     EXPECT_TRUE(is_neighbours) << y;
     // The near surface is brighter.
-    EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().bin_m(), 0.2) << y;
+    EXPECT_NEAR(image.depth_m(y, edge), 70.0 * table.bin_m(), 0.2) << y;
   }
 }
 
-TEST(MixedPixels, DroppedPixelsHaveNoValues) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames raw =
-      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
-  const DepthImage image = marked(setup, raw, MixedPixels::drop);
+TEST_F(MixedPixelsOfFrames, DroppedPixelsHaveNoValues) {
+  const DepthImage image = marked(setup, edge_frame, MixedPixels::drop);
   EXPECT_GT(share_marked(image), 0.0);
   for (std::size_t i = 0; i < image.status.size(); ++i) {
     const bool is_mixed = image.status.pixels[i] == PixelStatus::mixed;
@@ -146,80 +144,62 @@ TEST(MixedPixels, DroppedPixelsHaveNoValues) {
   }
 }
 
-TEST(MixedPixels, SurfacesWithoutAnEdgeAreUnchanged) {
-  const DecodeSetup setup = setup_of();
-  const SceneOfPixels flat = [](int, int) { return Seen{90.0}; };
-  const SceneOfPixels slanted = [](int y, int x) { return Seen{60.0 + 0.6 * x + 0.3 * y}; };
-  const SceneOfPixels textured = [](int y, int x) {
-    return Seen{90.0, (x / 3 + y / 3) % 2 == 0 ? 1e5 : 1.5e4};
+TEST_F(MixedPixelsOfFrames, SurfacesAndObjectsOnePixelWideAreUnchanged) {
+  const SceneOfMixtures flat = [](int, int) { return Mixture{90.0}; };
+  const SceneOfMixtures slanted = [](int y, int x) { return Mixture{60.0 + 0.6 * x + 0.3 * y}; };
+  const SceneOfMixtures textured = [](int y, int x) {
+    return Mixture{90.0, (x / 3 + y / 3) % 2 == 0 ? 1e5 : 1.5e4};
   };
-  for (const SceneOfPixels& scene : {flat, slanted, textured})
-    EXPECT_EQ(share_marked(marked(setup, frame_seen(setup.decoder.table(), scene))), 0.0);
+  const SceneOfMixtures lines = [](int, int x) {
+    return Mixture{x == 12 || x == 40 ? 60.0 : 130.0};
+  };
+  for (const SceneOfMixtures& scene : {flat, slanted, textured, lines})
+    EXPECT_EQ(share_marked(marked_scene(scene)), 0.0);
 }
 
-TEST(MixedPixels, NoiseAtASharpEdgeMarksFewPixels) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames raw = frame_seen(setup.decoder.table(), [](int, int x) {
-    return Seen{x < edge ? 70.0 : 120.0, 3e4};
+TEST_F(MixedPixelsOfFrames, NoiseAtASharpEdgeMarksFewPixels) {
+  const DepthImage image = marked_scene([](int, int x) {
+    return Mixture{x < edge ? 70.0 : 120.0, 3e4};
   });
-  EXPECT_LT(share_marked(marked(setup, raw)), 0.005);
+  EXPECT_LT(share_marked(image), 0.005);
 }
 
-TEST(MixedPixels, ObjectsOnePixelWideAreKept) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames raw = frame_seen(
-      setup.decoder.table(), [](int, int x) { return Seen{x == 12 || x == 40 ? 60.0 : 130.0}; });
-  EXPECT_EQ(share_marked(marked(setup, raw)), 0.0);
-}
-
-TEST(MixedPixels, EdgesOfASteepFloorAreFound) {
-  const DecodeSetup setup = setup_of();
+TEST_F(MixedPixelsOfFrames, EdgesOfASteepFloorAreFound) {
   // 1.6 bins per row are 12 cm per pixel, far above the noise.
   const auto seen = [](int row, int column) {
-    Seen pixel = edge_between(column);
+    Mixture pixel = edge_between(column);
     pixel.depth_bin += 1.6 * row;
     pixel.second_bin = 190.0;
     if (column > edge) pixel.depth_bin = 190.0;
     return pixel;
   };
-  const DepthImage image = marked(setup, frame_seen(setup.decoder.table(), seen));
-  int found = 0, elsewhere = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      (x == edge ? found : elsewhere) += image.status(y, x) == PixelStatus::mixed ? 1 : 0;
-  EXPECT_GE(found, height * 8 / 10);
-  EXPECT_LE(elsewhere, height * width / 100);
+  const DepthImage image = marked_scene(seen);
+  EXPECT_GE(count_marked(image).at_edge, height * 8 / 10);
+  EXPECT_LE(count_marked(image).elsewhere, height * width / 100);
 }
 
 /// A frame whose mixed pixels a filter has turned into single returns between both surfaces.
 RawFrames filtered_frame(const DecodingTable& table) {
-  return frame_seen(table, [](int, int x) { return x == edge ? Seen{95.0} : edge_between(x); });
+  return frame_of_mixtures(table,
+                           [](int, int x) { return x == edge ? Mixture{95.0} : edge_between(x); });
 }
 
-TEST(MixedPixels, UnfilteredValuesRevealMixedPixelsHiddenByAFilter) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames own =
-      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
-  const RawFrames filtered = filtered_frame(setup.decoder.table());
-  const RawView measured = view_of_frame(own, 0);
+TEST_F(MixedPixelsOfFrames, UnfilteredValuesRevealMixedPixelsHiddenByAFilter) {
+  const RawFrames filtered = filtered_frame(table);
+  const RawView measured = view_of_frame(edge_frame, 0);
   const auto marked_at_the_edge = [&](const UnfilteredPixels& unfiltered) {
     DepthImage image = setup.decoder.decode(filtered);
-    mark_mixed_pixels(setup.decoder.table(), view_of_frame(filtered, 0), MixedPixels::label,
-                      DecodedView::of(image), {}, {}, unfiltered);
-    int count = 0;
-    for (int y = 0; y < height; ++y) count += image.status(y, edge) == PixelStatus::mixed ? 1 : 0;
-    return count;
+    mark_mixed_pixels(table, view_of_frame(filtered, 0), MixedPixels::label, DecodedView::of(image),
+                      {}, {}, unfiltered);
+    return count_marked(image).at_edge;
   };
   EXPECT_EQ(marked_at_the_edge({}), 0);
   EXPECT_GE(marked_at_the_edge({.measured = &measured}), height - 2);
 }
 
-TEST(MixedPixels, PreviouslyFoundPixelsStayMarkedAndBelongToNoSurface) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames own =
-      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
-  const RawFrames filtered = filtered_frame(setup.decoder.table());
-  const RawView measured = view_of_frame(own, 0);
+TEST_F(MixedPixelsOfFrames, PreviouslyFoundPixelsStayMarkedAndBelongToNoSurface) {
+  const RawFrames filtered = filtered_frame(table);
+  const RawView measured = view_of_frame(edge_frame, 0);
   UnfilteredPixels unfiltered{.measured = &measured,
                               .mixed = Image<std::uint8_t>(height, width, 0)};
   for (int y = 0; y < height; ++y) unfiltered.mixed(y, edge) = 1;
@@ -227,36 +207,35 @@ TEST(MixedPixels, PreviouslyFoundPixelsStayMarkedAndBelongToNoSurface) {
   for (const MixedPixels mixed : all_mixed_pixels) {
     const DepthImage before = setup.decoder.decode(filtered);
     DepthImage image = before;
-    const std::int64_t count = mark_mixed_pixels(setup.decoder.table(), view_of_frame(filtered, 0),
-                                                 mixed, DecodedView::of(image), {}, {}, unfiltered);
+    const std::int64_t count = mark_mixed_pixels(table, view_of_frame(filtered, 0), mixed,
+                                                 DecodedView::of(image), {}, {}, unfiltered);
     EXPECT_EQ(count, std::ranges::count(image.status.pixels, PixelStatus::mixed));
     EXPECT_EQ(image.status(5, 12), PixelStatus::mixed);
     for (int y = 0; y < height; ++y) {
       EXPECT_EQ(image.status(y, edge), PixelStatus::mixed) << y;
       if (mixed != MixedPixels::snap) continue;
-      EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().bin_m(), 0.2) << y;
+      EXPECT_NEAR(image.depth_m(y, edge), 70.0 * table.bin_m(), 0.2) << y;
     }
   }
   unfiltered.mixed = Image<std::uint8_t>(3, 4, 0);
   DepthImage image = setup.decoder.decode(filtered);
   EXPECT_THAT(
       [&] {
-        mark_mixed_pixels(setup.decoder.table(), view_of_frame(filtered, 0), MixedPixels::label,
+        mark_mixed_pixels(table, view_of_frame(filtered, 0), MixedPixels::label,
                           DecodedView::of(image), {}, {}, unfiltered);
       },
       testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("unfiltered.mixed")));
 }
 
 TEST(MixedPixels, ThreeMeasurementsMarkNothing) {
-  const DecodeSetup setup = setup_of("hamiltonian-k3");
+  const DecodeSetup setup("hamiltonian-k3", camera_with("paper-10f0"));
   const RawFrames raw =
-      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+      frame_of_mixtures(setup.decoder.table(), [](int, int x) { return edge_between(x); });
   EXPECT_EQ(share_marked(marked(setup, raw)), 0.0);
 }
 
-TEST(MixedPixels, SinglePixelsAndEmptyFramesAreUnchanged) {
-  const DecodeSetup setup = setup_of();
-  RawFrames raw = frame_seen(setup.decoder.table(), [](int, int) { return Seen{90.0}; });
+TEST_F(MixedPixelsOfFrames, SinglePixelsAndEmptyFramesAreUnchanged) {
+  RawFrames raw = frame_of_mixtures(table, [](int, int) { return Mixture{90.0}; });
   RawFrames one = raw;
   one.height = one.width = 1;
   one.values.resize(static_cast<std::size_t>(one.measurements));
@@ -266,15 +245,13 @@ TEST(MixedPixels, SinglePixelsAndEmptyFramesAreUnchanged) {
     EXPECT_EQ(status, PixelStatus::invalid);
 }
 
-TEST(MixedPixels, RequireMatchingPlanesAndShapes) {
-  const DecodeSetup setup = setup_of();
-  const RawFrames raw = frame_seen(setup.decoder.table(), [](int, int) { return Seen{90.0}; });
+TEST_F(MixedPixelsOfFrames, RequireMatchingPlanesAndShapes) {
+  const RawFrames raw = frame_of_mixtures(table, [](int, int) { return Mixture{90.0}; });
   DepthImage image = setup.decoder.decode(raw);
   DecodedView view = DecodedView::of(image);
   view.status = nullptr;
-  EXPECT_THROW(
-      mark_mixed_pixels(setup.decoder.table(), view_of_frame(raw, 0), MixedPixels::label, view),
-      std::invalid_argument);
+  EXPECT_THROW(mark_mixed_pixels(table, view_of_frame(raw, 0), MixedPixels::label, view),
+               std::invalid_argument);
 }
 
 }  // namespace

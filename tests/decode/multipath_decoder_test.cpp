@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/shared/random.hpp"
@@ -86,19 +87,21 @@ struct TwoBucket {
   ForwardModel model{build_family("hamiltonian-k5", camera), camera};
   DecodingTable table = make_decoding_table(model, camera);
 
-  /// @param noise  in standard deviations
-  RawFrames pixels(int count, double signal, double ratio, double delay_m, double noise,
-                   std::vector<double>& true_m) const {
-    RawFrames raw;
-    raw.frames = raw.height = 1;
-    raw.width = count;
-    raw.measurements = model.measurements();
-    RandomStream random(3, 0);
+  /// Pixels at depths spread over the range.
+  /// @param returns_at  returns of a pixel whose first return is at a bin
+  /// @param noise       in standard deviations
+  RawFrames pixels(int count, const std::function<std::vector<Return>(double bin)>& returns_at,
+                   double noise, std::vector<double>& true_m, std::uint64_t seed = 3) const {
+    RawFrames raw{.frames = 1,
+                  .height = 1,
+                  .width = count,
+                  .measurements = model.measurements(),
+                  .values = {}};
+    RandomStream random(seed, 0);
     for (int i = 0; i < count; ++i) {
       const double bin = (i + 0.5) / count * model.samples();
       true_m.push_back(bin * camera.bin_m());
-      const std::vector<Return> returns = {{signal, bin},
-                                           {ratio * signal, bin + delay_m / camera.bin_m()}};
+      const std::vector<Return> returns = returns_at(bin);
       const Eigen::VectorXd mean = model.expected_electrons(returns, ambient_e_per_s);
       const Eigen::VectorXd variance = model.variance_e2(returns, ambient_e_per_s);
       for (Eigen::Index k = 0; k < mean.size(); ++k)
@@ -106,6 +109,13 @@ struct TwoBucket {
             static_cast<float>(mean[k] + noise * std::sqrt(variance[k]) * random.normal()));
     }
     return raw;
+  }
+  RawFrames pixels(int count, double signal, double ratio, double delay_m, double noise,
+                   std::vector<double>& true_m) const {
+    const auto two = [&](double bin) {
+      return std::vector<Return>{{signal, bin}, {ratio * signal, bin + delay_m / camera.bin_m()}};
+    };
+    return pixels(count, two, noise, true_m);
   }
 
   double mean_error_m(const Image<float>& depth_m, const std::vector<double>& true_m) const {
@@ -248,9 +258,7 @@ TEST(TwoReturnDecoder, FollowsItsPriorInDimLight) {
 
 TEST(TwoReturnDecoder, RejectsCodesThatCannotSeparateReturns) {
   const auto refused = [](const char* code, int taps, const char* why) {
-    const Camera camera = camera_with("paper-10f0", taps);
-    const DecodingTable table =
-        make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
+    const DecodingTable table = decoding_table_of(code, camera_with("paper-10f0", taps));
     EXPECT_THAT([&] { TwoReturnDecoder{table}; },
                 ThrowsMessage<std::invalid_argument>(testing::AllOf(
                     HasSubstr("independent means"), HasSubstr(why), HasSubstr("sensor.taps=2"))))
@@ -264,9 +272,8 @@ TEST(TwoReturnDecoder, RejectsCodesThatCannotSeparateReturns) {
 TEST(TwoReturnDecoder, DoesNotRecommendACodeBeyondTheBandwidth) {
   Camera camera = camera_with("paper-10f0", 2);
   camera.light.impulse_response.f_max_hz = camera.sensor.impulse_response.f_max_hz = 2.5e7;
-  const DecodingTable table =
-      make_decoding_table(ForwardModel(build_family("hamiltonian-k5", camera), camera), camera);
-  const auto problem = TwoReturnDecoder::why_not_decodable(table);
+  const auto problem =
+      TwoReturnDecoder::why_not_decodable(decoding_table_of("hamiltonian-k5", camera));
   ASSERT_TRUE(problem);
   EXPECT_THAT(*problem, testing::AllOf(HasSubstr("its 10 measurements suffice"),
                                        HasSubstr("higher bandwidth"),
@@ -289,24 +296,15 @@ TEST(TwoReturnDecoder, RejectsInvalidOptions) {
 TEST(TailDecoder, ReducesTheErrorOfATailFivefold) {
   const TwoBucket setup;
   std::vector<double> true_m;
-  RawFrames raw;
-  raw.frames = raw.height = 1;
-  raw.width = 100;
-  raw.measurements = setup.model.measurements();
-  RandomStream random(5, 0);
-  for (int i = 0; i < raw.width; ++i) {
-    const double bin = (i + 0.5) / raw.width * setup.model.samples();
-    true_m.push_back(bin * setup.camera.bin_m());
+  const auto with_tail = [&](double bin) {
     std::vector<Return> returns = {{1e5, bin}};
     constexpr int parts = 20;
     for (int j = 0; j < parts; ++j)
       returns.push_back(
           {0.3e5 / parts, bin - 0.5 * std::log1p(-(j + 0.5) / parts) / setup.camera.bin_m()});
-    const Eigen::VectorXd mean = setup.model.expected_electrons(returns, ambient_e_per_s);
-    const Eigen::VectorXd variance = setup.model.variance_e2(returns, ambient_e_per_s);
-    for (Eigen::Index k = 0; k < mean.size(); ++k)
-      raw.values.push_back(static_cast<float>(mean[k] + std::sqrt(variance[k]) * random.normal()));
-  }
+    return returns;
+  };
+  const RawFrames raw = setup.pixels(100, with_tail, 1.0, true_m, 5);
   const DepthImage image = TailDecoder(setup.table).decode(raw);
   EXPECT_GT(setup.mean_error_m(Decoder(setup.table).decode(raw).depth_m, true_m),
             5.0 * setup.mean_error_m(image.depth_m, true_m));

@@ -36,10 +36,6 @@ Camera mixer_camera() {
   return camera;
 }
 
-DecodingTable table_of(const Camera& camera, const char* code) {
-  return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
-}
-
 std::vector<float> pixel_of(const DecodingTable& table, int bin, double largest_dn) {
   std::vector<float> raw;
   const double scale = largest_dn / table.correlation.cwiseAbs().maxCoeff();
@@ -55,83 +51,62 @@ RawView row_of(const std::vector<Number>& raw, int measurements) {
                               measurements);
 }
 
-std::vector<PixelStatus> statuses_of(const DepthDecoder& decoder, const RawView& raw) {
-  std::vector<PixelStatus> statuses(static_cast<std::size_t>(raw.pixels()));
-  decoder.decode(raw, {.status = statuses.data()});
-  return statuses;
-}
-
-template <typename Number>
-std::vector<PixelStatus> statuses_of(const DepthDecoder& decoder, const std::vector<Number>& raw,
-                                     int measurements) {
-  return statuses_of(decoder, row_of(raw, measurements));
-}
-
 std::vector<std::unique_ptr<const DepthDecoder>> all_decoders(const Camera& camera) {
   std::vector<std::unique_ptr<const DepthDecoder>> decoders;
   for (const DecodeMethod method : all_decode_methods)
     decoders.push_back(make_decoder(
-        method,
-        table_of(camera, method == DecodeMethod::unwrap ? "sinusoid-k4" : "hamiltonian-k5")));
+        method, decoding_table_of(method == DecodeMethod::unwrap ? "sinusoid-k4" : "hamiltonian-k5",
+                                  camera)));
   return decoders;
 }
 
-/// One unclipped pixel, and one pixel for each replaced measurement and number.
-std::vector<float> with_each(const DecodingTable& table, const std::vector<float>& numbers) {
-  const std::vector<float> pixel = pixel_of(table, 31, 400.0);
-  std::vector<float> raw = pixel;
-  for (std::size_t k = 0; k < pixel.size(); ++k)
-    for (const float number : numbers) {
-      std::vector<float> other = pixel;
-      other[k] = number;
-      raw.insert(raw.end(), other.begin(), other.end());
-    }
-  return raw;
-}
-
-void expect_only_first_is_measured(const DepthDecoder& decoder, const std::vector<float>& numbers,
-                                   PixelStatus status) {
-  const DecodingTable& table = decoder.table();
-  std::vector<PixelStatus> found =
-      statuses_of(decoder, with_each(table, numbers), table.measurements());
-  EXPECT_NE(found.front(), status);
-  found.erase(found.begin());
-  EXPECT_THAT(found, Each(status));
+/// Expects `status` from every decoder if one measurement of a pixel is one of `numbers`, and
+/// another status of the pixel itself.
+void expect_status(const Camera& camera, const std::vector<float>& numbers, PixelStatus status) {
+  for (const auto& decoder : all_decoders(camera)) {
+    const std::vector<float> pixel = pixel_of(decoder->table(), 31, 400.0);
+    std::vector<float> raw = pixel;
+    for (std::size_t k = 0; k < pixel.size(); ++k)
+      for (const float number : numbers) {
+        raw.insert(raw.end(), pixel.begin(), pixel.end());
+        raw[raw.size() - pixel.size() + k] = number;
+      }
+    std::vector<PixelStatus> found(raw.size() / pixel.size());
+    decoder->decode(row_of(raw, static_cast<int>(pixel.size())), {.status = found.data()});
+    EXPECT_NE(found.front(), status);
+    found.erase(found.begin());
+    EXPECT_THAT(found, Each(status));
+  }
 }
 
 TEST(RawMarking, DifferencesAtTheLimitsOfTheConverterAreSaturated) {
-  for (const int bits : {10, 12, 16})
-    for (const auto& decoder : all_decoders(converted(difference_camera(), bits))) {
-      const auto half = static_cast<float>(1 << (bits - 1));
-      const auto largest = static_cast<float>((1 << bits) - 1);
-      expect_only_first_is_measured(*decoder, {half - 1.0f, -half, largest, -largest},
-                                    PixelStatus::saturated);
-    }
+  for (const int bits : {10, 12, 16}) {
+    const auto half = static_cast<float>(1 << (bits - 1));
+    const auto largest = static_cast<float>((1 << bits) - 1);
+    expect_status(converted(difference_camera(), bits), {half - 1.0f, -half, largest, -largest},
+                  PixelStatus::saturated);
+  }
 }
 
 TEST(RawMarking, ValuesOfMixersAtTheLimitsAreSaturated) {
-  for (const auto& decoder : all_decoders(converted(mixer_camera(), 11)))
-    expect_only_first_is_measured(*decoder, {1023.0f, -1024.0f, 1500.0f, -1500.0f},
-                                  PixelStatus::saturated);
-  for (const auto& decoder : all_decoders(converted(mixer_camera(), 11, 1000.0)))
-    expect_only_first_is_measured(*decoder, {0.0f, 2047.0f}, PixelStatus::saturated);
+  expect_status(converted(mixer_camera(), 11), {1023.0f, -1024.0f, 1500.0f, -1500.0f},
+                PixelStatus::saturated);
+  expect_status(converted(mixer_camera(), 11, 1000.0), {0.0f, 2047.0f}, PixelStatus::saturated);
   Camera wells = mixer_camera();
   wells.sensor.full_well_e = 2000.0;
-  for (const auto& decoder : all_decoders(wells))
-    expect_only_first_is_measured(*decoder, {2000.0f, -2000.0f}, PixelStatus::saturated);
+  expect_status(wells, {2000.0f, -2000.0f}, PixelStatus::saturated);
 }
 
 TEST(RawMarking, ADifferenceOfTheWholeFullWellIsSaturated) {
   Camera camera = difference_camera();
   camera.sensor.full_well_e = 3000.0;
-  for (const auto& decoder : all_decoders(camera))
-    expect_only_first_is_measured(*decoder, {3000.0f, -3000.0f}, PixelStatus::saturated);
+  expect_status(camera, {3000.0f, -3000.0f}, PixelStatus::saturated);
 }
 
 TEST(RawMarking, UnsignedDifferencesDecodeAsSignedOnes) {
   // Around the black level, whose deviation does not cancel in any three-measurement code.
   const Camera camera = converted(difference_camera(), 12, 1900.0);
-  const DecodingTable table = table_of(camera, "hamiltonian-k5");
+  const DecodingTable table = decoding_table_of("hamiltonian-k5", camera);
   const Decoder decoder(table);
   for (int bin = 0; bin < table.samples(); bin += 7) {
     const std::vector<float> pixel = pixel_of(table, bin, 1500.0);
@@ -154,41 +129,31 @@ TEST(RawMarking, UnsignedDifferencesDecodeAsSignedOnes) {
 TEST(RawMarking, MarkersAreAppliedInEveryDecoder) {
   for (Camera camera : {camera_with("paper-10f0", 2), difference_camera(), mixer_camera()}) {
     camera.raw = {.saturated = {32767.0, -32768.0}, .invalid = {-7777.0, 0.5}};
-    for (const auto& decoder : all_decoders(camera)) {
-      expect_only_first_is_measured(*decoder, {32767.0f, -32768.0f}, PixelStatus::saturated);
-      expect_only_first_is_measured(*decoder, {-7777.0f, 0.5f, nan, float_infinity},
-                                    PixelStatus::invalid);
-    }
+    expect_status(camera, {32767.0f, -32768.0f}, PixelStatus::saturated);
+    expect_status(camera, {-7777.0f, 0.5f, nan, float_infinity}, PixelStatus::invalid);
     camera.raw = {.saturated = {std::numeric_limits<double>::quiet_NaN()}, .invalid = {}};
-    for (const auto& decoder : all_decoders(camera)) {
-      expect_only_first_is_measured(*decoder, {nan}, PixelStatus::saturated);
-      expect_only_first_is_measured(*decoder, {float_infinity}, PixelStatus::invalid);
-    }
+    expect_status(camera, {nan}, PixelStatus::saturated);
+    expect_status(camera, {float_infinity}, PixelStatus::invalid);
   }
 }
 
 TEST(RawMarking, MarkersTakePrecedenceOverTheLimitsOfTheConverter) {
   Camera camera = converted(camera_with("paper-10f0", 2), 12);
   camera.raw.invalid = {4095.0};
-  for (const auto& decoder : all_decoders(camera)) {
-    expect_only_first_is_measured(*decoder, {4095.0f}, PixelStatus::invalid);
-    expect_only_first_is_measured(*decoder, {4096.0f}, PixelStatus::saturated);
-  }
+  expect_status(camera, {4095.0f}, PixelStatus::invalid);
+  expect_status(camera, {4096.0f}, PixelStatus::saturated);
 }
 
 RawFrames frame_with(const DecodingTable& table, float number) {
-  RandomStream random(5, 0);
-  RawFrames raw{
-      .frames = 1, .height = 12, .width = 12, .measurements = table.measurements(), .values = {}};
-  for (int i = 0; i < 144; ++i) append_noisy_pixel(table, 2e4, 0.0, 40.0, random, raw.values);
+  const auto plane = [](int, int) { return Seen{40.0, 2e4}; };
+  RawFrames raw = frame_seen(table, 12, 12, plane, 0.0, 5);
   for (float& value : raw.values) value = std::round(value);
   raw.values[static_cast<std::size_t>((6 * 12 + 6) * table.measurements())] = number;
   return raw;
 }
 
 std::vector<float> around_the_middle(const RawView& raw) {
-  std::vector<float> values(static_cast<std::size_t>(raw.pixels() * raw.measurements));
-  copy_pixels(raw, 0, raw.pixels(), values.data());
+  std::vector<float> values = values_of(raw);
   const auto first = values.begin() + (6 * 12 + 6) * raw.measurements;
   values.erase(first, first + raw.measurements);
   return values;
@@ -197,7 +162,7 @@ std::vector<float> around_the_middle(const RawView& raw) {
 TEST(RawMarking, FiltersDoNotSpreadSaturatedValues) {
   Camera camera = converted(difference_camera(), 10);
   camera.raw = {.saturated = {77.5}, .invalid = {78.5}};
-  const DecodingTable table = table_of(camera, "hamiltonian-k4");
+  const DecodingTable table = decoding_table_of("hamiltonian-k4", camera);
   const Filter filter(table);
   const FilteredFrame expected = filter.apply(frame_with(table, nan));
   for (const float number : {511.0f, -512.0f, 1023.0f, -1023.0f, 77.5f, 78.5f}) {
@@ -219,7 +184,7 @@ TEST(RawMarking, FiltersDoNotSpreadSaturatedValues) {
 }
 
 TEST(RawMarking, ExposuresSaturatedAtTheLowerLimitAreExcluded) {
-  const DecodingTable table = table_of(converted(mixer_camera(), 12), "hamiltonian-k4");
+  const DecodingTable table = decoding_table_of("hamiltonian-k4", converted(mixer_camera(), 12));
   const RawFrames clean = frame_with(table, 100.0f), clipped = frame_with(table, -2048.0f);
   const std::array exposures = {1.0, 2.0};
   const std::array views = {view_of_frame(clean, 0), view_of_frame(clipped, 0)};
@@ -237,7 +202,7 @@ TEST(RawMarking, FilteredValuesAreNotMarkedAgain) {
   // 0 marks sensor pixels, but a filtered difference of 0 is a valid measurement.
   Camera camera = difference_camera();
   camera.raw.invalid = {0.0};
-  const DecodingTable table = table_of(camera, "hamiltonian-k4");
+  const DecodingTable table = decoding_table_of("hamiltonian-k4", camera);
   const std::vector<float> raw = {0.0f, 500.0f, -300.0f, 200.0f};
   RawView view = row_of(raw, 4);
   PixelStatus status = PixelStatus::ok;
@@ -251,7 +216,7 @@ TEST(RawMarking, FilteredValuesAreNotMarkedAgain) {
 TEST(RawMarking, DifferencesAreMarkedIfTheirTapsAre) {
   Camera camera = converted(difference_camera(), 12, 64.0);
   camera.raw.invalid = {0.0};
-  const RawMarking marking = table_of(camera, "hamiltonian-k4").marking;
+  const RawMarking marking = decoding_table_of("hamiltonian-k4", camera).marking;
   EXPECT_EQ(marking.difference(3000.0, 100.0), 2900.0);
   EXPECT_EQ(marking.difference(100.0, 100.0), 0.0);
   EXPECT_EQ(marking.difference(4095.0, 3000.0), 4095.0 - 64.0);

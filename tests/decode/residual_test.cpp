@@ -20,26 +20,10 @@ namespace tofsmith {
 
 namespace {
 
-DecodingTable table_of(const std::string& code, const Camera& camera) {
-  return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
-}
-
 /// Its chords equal the true correlation functions.
 DecodingTable fine_table_of(const std::string& code, Camera camera) {
   camera.samples *= 16;
-  return table_of(code, camera);
-}
-
-DepthImage decode_row(DecodeMethod method, const DecodingTable& table,
-                      const std::vector<float>& raw, const DecodeOptions& options = {},
-                      const float* averaged = nullptr) {
-  const RawFrames frame = frame_of(raw, table.measurements());
-  RawView view = view_of_frame(frame, 0);
-  view.averaged = averaged;
-  DepthImage image(1, frame.width);
-  image.residual = image.depth_m;
-  make_decoder(method, table, options)->decode(view, DecodedView::of(image));
-  return image;
+  return decoding_table_of(code, camera);
 }
 
 double share_of(const DepthImage& image, PixelStatus status) {
@@ -81,28 +65,20 @@ void PrintTo(const ResidualCase& c, std::ostream* out) {
 
 class ResidualOfCode : public testing::TestWithParam<ResidualCase> {
  protected:
-  DecodingTable table() const {
-    const ResidualCase& c = GetParam();
-    return table_of(c.code, camera_with(c.camera, c.taps, c.readout));
-  }
-  DecodingTable fine_table() const {
-    const ResidualCase& c = GetParam();
-    return fine_table_of(c.code, camera_with(c.camera, c.taps, c.readout));
-  }
+  const Camera camera = camera_with(GetParam().camera, GetParam().taps, GetParam().readout);
+  const DecodingTable table = decoding_table_of(GetParam().code, camera);
+  const DecodingTable actual = fine_table_of(GetParam().code, camera);
   /// Ambient light cancels in differences; decoders assume the camera's level.
-  double ambient_e_per_s() const {
-    if (GetParam().readout == Readout::separate) return 1e3;
-    return built_in_camera(GetParam().camera).operating.middle().ambient_e_per_s;
-  }
+  const double ambient_e_per_s =
+      camera.sensor.readout == Readout::separate ? 1e3 : camera.operating.middle().ambient_e_per_s;
 };
 
 TEST_P(ResidualOfCode, MarksConsistentPixelsAtTheConfiguredRate) {
-  const DecodingTable table = this->table(), actual = fine_table();
   const int pixels = GetParam().method == DecodeMethod::ml ? 4000 : 20000;
   const double rate = 0.02;
   for (const double signal : {3e4, 1e5, 1e7}) {
     const DepthImage image = decode_row(GetParam().method, table,
-                                        noisy_pixels(actual, signal, ambient_e_per_s(), pixels, 1),
+                                        noisy_pixels(actual, signal, ambient_e_per_s, pixels, 1),
                                         {.min_confidence = 0.0, .false_alarm_rate = rate});
     const double error = std::sqrt(rate / pixels);
     EXPECT_NEAR(share_of(image, PixelStatus::inconsistent), rate, 4 * error + 0.05 * rate)
@@ -112,7 +88,6 @@ TEST_P(ResidualOfCode, MarksConsistentPixelsAtTheConfiguredRate) {
 }
 
 TEST_P(ResidualOfCode, DetectsMeasurementsOfTwoDepths) {
-  const DecodingTable table = this->table(), actual = fine_table();
   const double samples = actual.samples();
   const DepthImage image = decode_row(
       GetParam().method, table,
@@ -121,9 +96,8 @@ TEST_P(ResidualOfCode, DetectsMeasurementsOfTwoDepths) {
 }
 
 TEST_P(ResidualOfCode, AccountsForAveragedMeasurements) {
-  const DecodingTable table = this->table();
   constexpr int pixels = 1000, averaged = 64;
-  const std::vector<float> raw = noisy_pixels(fine_table(), 1e5, 1e3, pixels, 2);
+  const std::vector<float> raw = noisy_pixels(actual, 1e5, 1e3, pixels, 2);
   const std::vector<float> as_means(pixels, averaged);
   const DepthImage single = decode_row(GetParam().method, table, raw);
   const DepthImage mean = decode_row(GetParam().method, table, raw, {}, as_means.data());
@@ -147,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(
         ResidualCase{DecodeMethod::unwrap, "multifrequency-1x4-3x4", "paper-10f0"}));
 
 TEST(Residual, IsMissingWithoutDegreesOfFreedom) {
-  const DecodingTable table = table_of("hamiltonian-k3", camera_with("paper-10f0"));
+  const DecodingTable table = decoding_table_of("hamiltonian-k3", camera_with("paper-10f0"));
   for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml}) {
     const DepthImage image = decode_row(method, table, noisy_pixels(table, 1e5, 1e3, 200, 3));
     for (const float residual : image.residual.pixels) EXPECT_TRUE(std::isnan(residual));
@@ -156,7 +130,7 @@ TEST(Residual, IsMissingWithoutDegreesOfFreedom) {
 }
 
 TEST(Residual, MarksNothingAtRateZero) {
-  const DecodingTable table = table_of("sinusoid-k8", camera_with("paper-10f0"));
+  const DecodingTable table = decoding_table_of("sinusoid-k8", camera_with("paper-10f0"));
   std::vector<float> raw = noisy_pixels(table, 1e6, 1e3, 200, 3);
   for (std::size_t i = 0; i < raw.size(); i += 8) raw[i] += 2000.0f;
   for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml, DecodeMethod::unwrap}) {
@@ -169,7 +143,7 @@ TEST(Residual, MarksNothingAtRateZero) {
 
 TEST(Residual, ToleratesTheConfiguredModelError) {
   // Every measurement is off by 2 % of its variation over depth.
-  const DecodingTable table = table_of("sinusoid-k8", camera_with("paper-10f0"));
+  const DecodingTable table = decoding_table_of("sinusoid-k8", camera_with("paper-10f0"));
   DecodingTable actual = fine_table_of("sinusoid-k8", camera_with("paper-10f0"));
   const Eigen::RowVectorXd mean = actual.correlation.colwise().mean();
   for (int k = 0; k < 8; ++k)
@@ -185,7 +159,8 @@ TEST(Residual, ToleratesTheConfiguredModelError) {
 }
 
 TEST(Residual, IsSmallIfTwoReturnsExplainThePixel) {
-  const DecodingTable table = table_of("multifrequency-1x4-2x4-3x4", camera_with("paper-10f0"));
+  const DecodingTable table =
+      decoding_table_of("multifrequency-1x4-2x4-3x4", camera_with("paper-10f0"));
   const DecodingTable actual =
       fine_table_of("multifrequency-1x4-2x4-3x4", camera_with("paper-10f0"));
   std::vector<float> raw;

@@ -62,10 +62,6 @@ RawFrames scattered(const RawFrames& raw, StrayLight& stray_light) {
   return seen;
 }
 
-RawView view_of_frame(const RawFrames& raw) {
-  return RawView::interleaved(raw.values.data(), raw.height, raw.width, raw.measurements);
-}
-
 TEST(StrayLight, GatheringInvertsScattering) {
   for (const double total : {0.01, 0.1, 0.45}) {
     StrayLight stray_light(glare(total));
@@ -96,7 +92,7 @@ TEST(StrayLight, DarkObjectsNextToBrightOnesKeepTheirDepth) {
   StrayLight stray_light(glare(0.05));
   const RawFrames truth = scene(of), seen = scattered(truth, stray_light);
   RawFrames clean;
-  stray_light.remove(view_of_frame(seen), of, clean);
+  stray_light.remove(view_of_frame(seen, 0), of, clean);
   const auto worst_m = [&](const RawFrames& raw) {
     const DepthImage image = decoder.decode(raw);
     double worst = 0.0;
@@ -118,7 +114,7 @@ TEST(StrayLight, SaturatedAndInvalidPixelsAreUnchanged) {
   seen.values[5] = std::numeric_limits<float>::quiet_NaN();
   seen.values[8] = 65534.0F;  // just below saturation; gathering makes it brighter
   RawFrames clean;
-  stray_light.remove(view_of_frame(seen), of, clean);
+  stray_light.remove(view_of_frame(seen, 0), of, clean);
   EXPECT_EQ(clean.values[0], 65535.0F);
   EXPECT_TRUE(std::isnan(clean.values[5]));
   EXPECT_LT(clean.values[8], 65535.0F);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 
 #include "decode_setup.hpp"
@@ -29,10 +28,7 @@ struct Out {
 };
 
 Out out_of(const RawView& raw) {
-  Out out{.values = std::vector<float>(static_cast<std::size_t>(raw.pixels() * raw.measurements)),
-          .averaged = {raw.averaged, raw.averaged + raw.pixels()}};
-  copy_pixels(raw, 0, raw.pixels(), out.values.data());
-  return out;
+  return {.values = values_of(raw), .averaged = {raw.averaged, raw.averaged + raw.pixels()}};
 }
 
 std::vector<Out> filtered(TimeFilter& filter, const std::vector<RawFrames>& frames) {
@@ -50,29 +46,20 @@ std::vector<Out> filtered(const DecodingTable& table, const TimeFilterOptions& o
 }
 
 DecodingTable hamiltonian() {
-  return DecodeSetup("hamiltonian-k4", camera_with("paper-10f0")).decoder.table();
+  return decoding_table_of("hamiltonian-k4", camera_with("paper-10f0"));
 }
-
-RawFrames frame_of(const DecodingTable& table, std::uint64_t seed,
-                   const std::function<double(int row, int column)>& depth_bin) {
-  return frame_by_pixel(table.measurements(), height, width, seed,
-                        [&](int row, int column, RandomStream& random, std::vector<float>& raw) {
-                          append_noisy_pixel(table, 1e5, 1e4, depth_bin(row, column), random, raw);
-                        });
-}
-
-double slanted(int row, int column) { return 60.0 + 0.3 * row + 0.1 * column; }
 
 /// A block of 12 columns moves `columns` per frame in front of a slanted plane.
 std::vector<RawFrames> moving(const DecodingTable& table, int frames, int columns) {
   std::vector<RawFrames> recording;
-  for (int frame = 0; frame < frames; ++frame)
-    recording.push_back(
-        frame_of(table, 100 + static_cast<std::uint64_t>(frame), [&](int row, int column) {
-          const int first = 4 + frame * columns;
-          return slanted(row, column) -
-                 (column >= first && column < first + 12 && row < 20 ? 30.0 : 0.0);
-        }));
+  for (int frame = 0; frame < frames; ++frame) {
+    const int first = 4 + frame * columns;
+    const auto scene = [&](int row, int column) {
+      const bool is_block = column >= first && column < first + 12 && row < 20;
+      return Seen{60.0 + 0.3 * row + 0.1 * column - (is_block ? 30.0 : 0.0), 1e5};
+    };
+    recording.push_back(frame_seen(table, height, width, scene, 1e4, 100 + std::uint64_t(frame)));
+  }
   return recording;
 }
 

@@ -24,19 +24,17 @@ using DepthOfPixels = std::function<double(int row, int column)>;
 
 RawFrames frame_of(const DecodingTable& table, const DepthOfPixels& depth, double signal_e_per_s,
                    double ambient_e_per_s, std::uint64_t seed) {
-  return frame_by_pixel(table.measurements(), height, width, seed,
-                        [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
-                          append_noisy_pixel(table, signal_e_per_s, ambient_e_per_s, depth(y, x),
-                                             random, raw);
-                        });
+  return frame_seen(
+      table, height, width,
+      [&](int y, int x) {
+        return Seen{depth(y, x), signal_e_per_s};
+      },
+      ambient_e_per_s, seed);
 }
 
 double slanted(int row, int column) { return 60.0 + 0.3 * row + 0.1 * column; }
-
-std::vector<float> values_of(const RawView& raw) {
-  std::vector<float> values(static_cast<std::size_t>(raw.pixels() * raw.measurements));
-  copy_pixels(raw, 0, raw.pixels(), values.data());
-  return values;
+double with_moved_corner(int row, int column) {
+  return slanted(row, column) + (row < 9 && column < 12 ? 40.0 : 0.0);
 }
 
 std::vector<float> averaged_of(const RawView& raw) {
@@ -51,7 +49,7 @@ double mean_of(const std::vector<float>& values) {
 
 DecodingTable table_of(const std::string& code = "hamiltonian-k4",
                        const Camera& camera = camera_with("paper-10f0")) {
-  return DecodeSetup(code, camera).decoder.table();
+  return decoding_table_of(code, camera);
 }
 
 /// Returns the last result.
@@ -106,26 +104,14 @@ void expect_static_scene_is_unbiased(const DecodingTable& table, const Light& li
     double sum = 0.0;
     for (std::size_t i = 0; i < pixels; ++i) {
       const int row = static_cast<int>(i) / width, column = static_cast<int>(i) % width;
-      const double bin = slanted(row, column);
-      const int from = static_cast<int>(bin), to = from + 1;
-      const double t = bin - from;
-      for (std::size_t k = 0; k < k_count; ++k) {
-        const auto at = static_cast<Eigen::Index>(k);
-        const auto along = [&](const Eigen::MatrixXd& chi) {
-          return (1 - t) * chi(from, at) + t * chi(to, at);
-        };
-        const double exposure = table.exposure_s[at];
-        const double truth = exposure * (light.signal * along(table.correlation) +
-                                         light.ambient * table.ambient_gain[at]) +
-                             table.dark_electrons[at];
-        const double variance = exposure * (light.signal * along(table.shot()) +
-                                            light.ambient * table.shot_ambient()[at]) +
-                                table.shot_dark()[at] + table.constant_variance_e2[at];
-        const double error =
-            (static_cast<double>(values[i * k_count + k]) - table.black_level[at]) *
-                table.gain_e_per_raw[at] -
-            truth;
-        const double deviations = error / std::sqrt(variance / static_cast<double>(averaged[i]));
+      for (int k = 0; k < table.measurements(); ++k) {
+        const Moments of = moments_of(table, light.signal, light.ambient, slanted(row, column), k);
+        const double electrons =
+            (static_cast<double>(values[i * k_count + static_cast<std::size_t>(k)]) -
+             table.black_level[k]) *
+            table.gain_e_per_raw[k];
+        const double deviations =
+            (electrons - of.mean_e) / std::sqrt(of.variance_e2 / static_cast<double>(averaged[i]));
         sum += deviations;
         squares += deviations * deviations;
       }
@@ -169,10 +155,7 @@ TEST(TimeFilter, OlderFramesLoseWeight) {
 TEST(TimeFilter, PixelsThatMovedKeepNoPreviousFrames) {
   TimeFilter filter(table_of());
   add_static(filter, 20, 1e5, 1e4, 1);
-  const auto moved = [](int row, int column) {
-    return slanted(row, column) + (row < 9 && column < 12 ? 40.0 : 0.0);
-  };
-  const RawFrames raw = frame_of(filter.table(), moved, 1e5, 1e4, 99);
+  const RawFrames raw = frame_of(filter.table(), with_moved_corner, 1e5, 1e4, 99);
   const RawView view = *filter.add(view_of_frame(raw, 0));
   const std::vector<float> values = values_of(view), averaged = averaged_of(view);
   std::vector<float> stayed;
@@ -235,10 +218,7 @@ TEST(TimeFilter, BeforeAFilterPixelsKeepNoMoreThanTheirNeighbours) {
   TimeFilter alone(table_of()), before(table_of(), {.before_filter = true});
   add_static(alone, 20, 1e5, 1e4, 1);
   add_static(before, 20, 1e5, 1e4, 1);
-  const auto moved = [](int row, int column) {
-    return slanted(row, column) + (row < 9 && column < 12 ? 40.0 : 0.0);
-  };
-  RawFrames raw = frame_of(alone.table(), moved, 1e5, 1e4, 99);
+  RawFrames raw = frame_of(alone.table(), with_moved_corner, 1e5, 1e4, 99);
   // An invalid pixel does not limit its neighbours.
   const std::size_t invalid = 25 * width + 30;
   raw.values[4 * invalid] = nan;
@@ -257,8 +237,7 @@ TEST(TimeFilter, BeforeAFilterPixelsKeepNoMoreThanTheirNeighbours) {
 }
 
 TEST(TimeFilter, PixelsWithoutMeasurementAreUnchangedAndRestart) {
-  Camera camera = camera_with("paper-10f0");
-  DecodingTable table = table_of("hamiltonian-k4", camera);
+  DecodingTable table = table_of();
   table.saturation_level = 1e6F;
   TimeFilter filter(table);
   add_static(filter, 5, 1e5, 1e4, 1);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "decode/ambient_projection.hpp"
 #include "decode/raw_scale.hpp"
@@ -22,15 +21,13 @@ constexpr int height = 37, width = 45, pixels = height * width;
 /// A block moves in front of a slanted plane.
 std::vector<RawFrames> recording_of(const DecodingTable& table, int frames) {
   std::vector<RawFrames> recording;
-  for (int frame = 0; frame < frames; ++frame)
-    recording.push_back(frame_by_pixel(
-        table.measurements(), height, width, 7 + static_cast<std::uint64_t>(frame),
-        [&](int row, int column, RandomStream& random, std::vector<float>& raw) {
-          const bool is_block = std::abs(row - 12) < 8 && std::abs(column - 8 - 2 * frame) < 6;
-          append_noisy_pixel(table, 1e5, 1e4,
-                             60.0 + 0.3 * row + 0.1 * column - (is_block ? 2.5 * frame : 0.0),
-                             random, raw);
-        }));
+  for (int frame = 0; frame < frames; ++frame) {
+    const auto scene = [&](int row, int column) {
+      const bool is_block = std::abs(row - 12) < 8 && std::abs(column - 8 - 2 * frame) < 6;
+      return Seen{60.0 + 0.3 * row + 0.1 * column - (is_block ? 2.5 * frame : 0.0), 1e5};
+    };
+    recording.push_back(frame_seen(table, height, width, scene, 1e4, 7 + std::uint64_t(frame)));
+  }
   return recording;
 }
 
@@ -126,14 +123,10 @@ class PlainTimeFilter {
   std::vector<double> difference_, chi2_;
 };
 
-DecodingTable table_of(const std::string& code) {
-  return DecodeSetup(code, camera_with("paper-10f0")).decoder.table();
-}
-
 TEST(TimeKernel, EqualsTheReference) {
   for (const char* code : {"hamiltonian-k4", "sinusoid-k3", "hamiltonian-k5"}) {
     SCOPED_TRACE(code);
-    const DecodingTable table = table_of(code);
+    const DecodingTable table = decoding_table_of(code, camera_with("paper-10f0"));
     const TimeFilterOptions options{.max_frames = 4};
     TimeFilter filter(table, options);
     PlainTimeFilter plain(table, options);
@@ -141,8 +134,7 @@ TEST(TimeKernel, EqualsTheReference) {
     for (const RawFrames& raw : recording_of(table, 6)) {
       const RawView view = *filter.add(view_of_frame(raw, 0));
       plain.add(raw);
-      std::vector<float> values(raw.values.size());
-      copy_pixels(view, 0, pixels, values.data());
+      const std::vector<float> values = values_of(view);
       for (std::size_t i = 0; i < values.size(); ++i)
         ASSERT_NEAR(static_cast<double>(values[i]), plain.mean[i], 2e-4 * std::abs(plain.mean[i]));
       for (std::size_t i = 0; i < pixels; ++i) {
@@ -158,11 +150,10 @@ TEST(TimeKernel, EqualsTheReference) {
 }
 
 TEST(TimeKernel, IsBitIdenticalOnEveryInstructionSet) {
-  for (const char* code : {"hamiltonian-k4", "square-k4"}) {
-    const Camera camera = camera_with("paper-10f0", 2, Readout::difference);
-    const DecodingTable table = std::string(code) == "square-k4"
-                                    ? DecodeSetup(code, camera).decoder.table()
-                                    : table_of(code);
+  for (const auto& [code, camera] :
+       {std::pair{"hamiltonian-k4", camera_with("paper-10f0")},
+        {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}}) {
+    const DecodingTable table = decoding_table_of(code, camera);
     const auto recording = recording_of(table, 3);
     std::vector<float> first;
     for_each_target([&] {
@@ -170,9 +161,9 @@ TEST(TimeKernel, IsBitIdenticalOnEveryInstructionSet) {
       std::vector<float> values;
       for (const RawFrames& raw : recording) {
         const RawView view = *filter.add(view_of_frame(raw, 0));
+        const std::vector<float> means = values_of(view);
         values.insert(values.end(), view.averaged, view.averaged + pixels);
-        values.resize(values.size() + raw.values.size());
-        copy_pixels(view, 0, pixels, values.data() + values.size() - raw.values.size());
+        values.insert(values.end(), means.begin(), means.end());
       }
       if (first.empty()) first = values;
       EXPECT_EQ(values, first);

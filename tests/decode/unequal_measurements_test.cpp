@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "decode_setup.hpp"
-#include "reference_decoder.hpp"
 #include "sanitizers.hpp"
 #include "tofsmith/core/units.hpp"
 
@@ -44,19 +43,6 @@ DecodingTable random_table(RandomStream& random, int measurements) {
   return table;
 }
 
-void append_raw(std::vector<float>& raw, const DecodingTable& table, double signal, double ambient,
-                double depth_bin) {
-  const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();
-  const double t = depth_bin - from;
-  for (int k = 0; k < table.measurements(); ++k) {
-    const double chi = (1 - t) * table.correlation(from, k) + t * table.correlation(to, k);
-    const double electrons =
-        table.exposure_s[k] * (signal * chi + ambient * table.ambient_gain[k]) +
-        table.dark_electrons[k];
-    raw.push_back(static_cast<float>(electrons / table.gain_e_per_raw[k] + table.black_level[k]));
-  }
-}
-
 TEST(UnequalMeasurements, DepthSignalAndAmbientAreRecoveredWithoutNoise) {
   constexpr double signal = 1e6, ambient = 3e4;
   for (std::uint64_t seed = 0; seed < repetitions(60u); ++seed) {
@@ -68,7 +54,7 @@ TEST(UnequalMeasurements, DepthSignalAndAmbientAreRecoveredWithoutNoise) {
     std::vector<double> truth;
     for (int i = 0; i < 50; ++i) {
       truth.push_back(table.samples() * random.uniform());
-      append_raw(raw, table, signal, ambient, truth.back());
+      append_pixel(table, signal, ambient, table.in_bins(truth.back()), nullptr, raw);
     }
     const DepthImage image = decoder.decode(frame_of(raw, table.measurements()));
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -79,19 +65,6 @@ TEST(UnequalMeasurements, DepthSignalAndAmbientAreRecoveredWithoutNoise) {
       ASSERT_NEAR(image.signal_e_per_s.pixels[i], signal, 5e-3 * signal) << seed;
       ASSERT_NEAR(image.ambient_e_per_s.pixels[i], ambient, 5e-3 * signal) << seed;
     }
-  }
-}
-
-TEST(UnequalMeasurements, NoisyPixelsDecodeLikeTheReference) {
-  for (std::uint64_t seed = 0; seed < repetitions(40u); ++seed) {
-    RandomStream random(seed, 2);
-    const Decoder decoder(random_table(random, 3 + static_cast<int>(seed % 4)));
-    const ReferenceDecoder reference(decoder.table());
-    const auto k_count = static_cast<std::size_t>(decoder.measurements());
-    const std::vector<float> raw = noisy_pixels(decoder.table(), 2e4, 1e4, 200, seed);
-    const auto bins = bins_of(decoder, raw);
-    for (std::size_t i = 0; i < bins.size(); ++i)
-      ASSERT_EQ(bins[i], reference.bin(&raw[i * k_count])) << seed << ", pixel " << i;
   }
 }
 
@@ -123,26 +96,6 @@ TEST(UnequalMeasurements, GainAndOffsetAreCorrectedFirst) {
     ASSERT_NEAR(image.confidence.pixels[i], expected.confidence.pixels[i], 1e-5) << i;
     ASSERT_EQ(image.status.pixels[i], expected.status.pixels[i]) << i;
   }
-}
-
-TEST(UnequalMeasurements, AWrongAmbientDirectionCausesErrors) {
-  // If the mean is projected out instead, ambient light changes depths.
-  RandomStream random(5, 3);
-  const DecodingTable table = random_table(random, 4);
-  DecodingTable equal = table;
-  equal.ambient_gain.setOnes();
-  std::vector<float> raw;
-  for (int n = 0; n < table.samples(); ++n) append_raw(raw, table, 1e5, 1e6, n);
-  const auto right = depth_bins_of(Decoder(table), raw), wrong = depth_bins_of(Decoder(equal), raw);
-  const double bins_per_row = static_cast<double>(table.bin_count()) / table.samples();
-  double largest = 0.0;
-  for (int n = 0; n < table.samples(); ++n) {
-    const auto at = static_cast<std::size_t>(n);
-    EXPECT_NEAR(circular_difference(right[at], n * bins_per_row, table.bin_count()), 0.0, 0.05);
-    largest = std::max(
-        largest, std::abs(circular_difference(wrong[at], n * bins_per_row, table.bin_count())));
-  }
-  EXPECT_GT(largest, 1.0);
 }
 
 /// Returns exclusive taps of random widths and a pulse wider than any of them.

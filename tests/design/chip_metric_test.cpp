@@ -83,13 +83,6 @@ double distance(const ChipCode& code, const Camera& camera, const OperatingPoint
   return (truth - signal * other).norm();
 }
 
-TEST(ChipMetric, HasTheKnownErrorsOfTheThreePhaseSquare) {
-  EXPECT_NEAR(chip_metric_rms_m(three_phase(), nine_chips(), high), 7.874e-3, 5e-7);
-  EXPECT_NEAR(chip_metric_rms_m(three_phase(), nine_chips(), low_signal), 39.00e-3, 5e-6);
-  const ChipCode wider = code_of({{"111100000", "111000000", "000111000", "000000111"}});
-  EXPECT_NEAR(chip_metric_rms_m(wider, nine_chips(), low_ambient), 32.83e-3, 5e-6);
-}
-
 TEST(ChipMetric, EqualsTheCramerRaoBoundOfTheCode) {
   for (const double peak_factor : {1.0, 2.5}) {
     Camera camera = nine_chips();

@@ -5,15 +5,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "circulant_tv_instances.hpp"
+#include "core/shared/periodic.hpp"
+#include "core/shared/random.hpp"
 #include "design/circulant_tv/circulant_tv_admm.hpp"
 #include "design/circulant_tv/proximal_operators.hpp"
+#include "refusal.hpp"
 
 namespace tofsmith {
 
@@ -21,11 +25,60 @@ namespace {
 
 constexpr double tolerance = 1e-7;
 
+/// Convolves with a centred Hann window of `width` samples and sum 1.
+Eigen::VectorXd smoothed(const Eigen::VectorXd& x, int width) {
+  Eigen::VectorXd window = Eigen::VectorXd::Zero(x.size());
+  for (int i = 0; i < width; ++i)
+    window[(i - width / 2 + x.size()) % x.size()] =
+        0.5 - 0.5 * std::cos(2 * std::numbers::pi * (i + 1) / (width + 1));
+  return circular_convolution(x, window / window.sum());
+}
+
+Eigen::VectorXd trapezoid_target(int samples, double pulse_duty) {
+  Eigen::VectorXd square(samples), pulse(samples);
+  for (int n = 0; n < samples; ++n) {
+    square[n] = n + 0.5 < 0.5 * samples ? 1.0 : 0.0;
+    pulse[n] = n + 0.5 < pulse_duty * samples ? 1.0 / pulse_duty : 0.0;
+  }
+  return circular_correlation(square, pulse) / samples;
+}
+
+/// Returns a random sub-problem of the alternating design. The fixed waveform is binary with 1 to 8
+/// pulses, the target a trapezoid, noisy in half of the cases. The unknown is a demodulation (at
+/// most 1, no budget) or a modulation (peak factor 2 to 30, mean at most 1).
+/// @param band_limited  smooths the fixed waveform twice by a Hann window
+CirculantTvProblem random_circulant_tv(int samples, double weight_per_sample, bool band_limited,
+                                       RandomStream& random) {
+  const auto below = [&](int count) { return static_cast<int>(random.uniform() * count); };
+  CirculantTvProblem problem;
+  Eigen::VectorXd waveform = Eigen::VectorXd::Zero(samples);
+  const int pulses = 1 + below(8);
+  int position = below(samples);
+  for (int edge = 0; edge < 2 * pulses; ++edge) {
+    const int length = 1 + below(std::max(1, samples / pulses));
+    for (int i = 0; i < length; ++i) waveform[(position + i) % samples] = edge % 2 == 0 ? 1 : 0;
+    position += length;
+  }
+  if (band_limited) {
+    const int width = std::max(3, static_cast<int>(samples * (0.04 + 0.1 * random.uniform())));
+    waveform = smoothed(smoothed(waveform, width), width);
+  }
+  problem.kernel = waveform / samples;
+  problem.target = trapezoid_target(samples, below(2) == 0 ? 1.0 / 6 : 1.0 / 30);
+  if (below(2) == 0)
+    for (double& value : problem.target) value += 0.02 * random.normal();
+  problem.total_variation_weight = weight_per_sample * samples;
+  constexpr double peaks[] = {1, 2, 4, 8, 15, 30};
+  problem.upper_bound = peaks[below(6)];
+  if (problem.upper_bound > 1) problem.budget = samples;
+  return problem;
+}
+
 CirculantTvProblem instance(std::uint64_t item, double weight_per_sample = 2e-5, int samples = 240,
                             std::optional<bool> band_limited = {}) {
   RandomStream random(7, item);
-  return test::random_circulant_tv(
-      {samples, weight_per_sample, band_limited.value_or(item % 2 == 1)}, random);
+  return random_circulant_tv(samples, weight_per_sample, band_limited.value_or(item % 2 == 1),
+                             random);
 }
 
 void expect_solved(const CirculantTvProblem& problem, const CirculantTvResult& result) {
@@ -67,17 +120,6 @@ TEST_P(CirculantTvInstances, AreSolvedAndCertifiedWithoutFallback) {
 // a gradient with plain double-precision sums provides.
 INSTANTIATE_TEST_SUITE_P(WeightPerSample, CirculantTvInstances,
                          testing::Values(2e-5, 2e-6, 2e-7, 2e-8, 2e-9));
-
-TEST(CirculantTv, ShiftingTheTargetShiftsTheSolution) {
-  for (int item = 0; item < 20; ++item) {
-    CirculantTvProblem problem = instance(item);
-    const CirculantTvResult still = solve_circulant_tv(problem);
-    problem.target = circular_shift(problem.target, 17);
-    const CirculantTvResult moved = solve_circulant_tv(problem);
-    EXPECT_NEAR(moved.objective, still.objective, 1e-10 * still.objective);
-    EXPECT_LE(certificate(problem, circular_shift(still.x, 17)).worst(), tolerance);
-  }
-}
 
 TEST(CirculantTv, ScalingTheTargetTheBoundsAndTheWeightScalesTheSolution) {
   constexpr double factor = 7.25;
@@ -164,7 +206,7 @@ TEST(CirculantTv, FindsTheIdealPulseOfThreeCodes) {
   CirculantTvProblem problem;
   problem.kernel = Eigen::VectorXd::Zero(samples);
   problem.kernel.head(samples / 2).setConstant(1.0 / samples);
-  problem.target = test::trapezoid_target(samples, 1.0 / 6);
+  problem.target = trapezoid_target(samples, 1.0 / 6);
   problem.upper_bound = 6;
   problem.budget = samples;
   problem.total_variation_weight = 1e-8;
@@ -212,44 +254,28 @@ TEST(CirculantTv, AResultStartsAsFailure) {
 // Expects that solving `problem` fails with a message that contains all `words`.
 void expect_refused(const CirculantTvProblem& problem, const std::vector<std::string>& words,
                     const CirculantTvOptions& options = {}) {
-  try {
-    solve_circulant_tv(problem, options);
-    FAIL() << "accepted; expected a complaint about " << words.front();
-  } catch (const std::invalid_argument& error) {
-    for (const std::string& word : words) EXPECT_THAT(error.what(), testing::HasSubstr(word));
-  }
+  const std::string refusal = refusal_of([&] { solve_circulant_tv(problem, options); });
+  for (const std::string& word : words) EXPECT_THAT(refusal, testing::HasSubstr(word));
 }
 
 TEST(CirculantTv, NamesFieldValueAndRuleOfBadInput) {
-  const CirculantTvProblem good = instance(0);
-  CirculantTvProblem bad = good;
-  bad.kernel[3] = std::numeric_limits<double>::quiet_NaN();
-  expect_refused(bad, {"kernel[3]", "nan", "finite"});
-  bad = good;
-  bad.target[5] = std::numeric_limits<double>::infinity();
-  expect_refused(bad, {"target[5]", "inf", "finite"});
-  bad = good;
-  bad.target.conservativeResize(239);
-  expect_refused(bad, {"target.size()", "239", "240"});
-  bad = {};
-  expect_refused(bad, {"kernel.size()", "0", ">= 1"});
-  for (const double weight : {0.0, -1.0}) {
-    bad = good;
-    bad.total_variation_weight = weight;
-    expect_refused(bad, {"total_variation_weight", "> 0"});
-  }
-  bad = good;
-  bad.upper_bound = -2;
-  expect_refused(bad, {"upper_bound", "-2", "> 0"});
-  bad = good;
-  bad.budget = -3.0;
-  expect_refused(bad, {"budget", "-3", ">= 0"});
-  CirculantTvOptions options;
-  options.max_iterations = -3;
-  expect_refused(good, {"max_iterations", "-3", ">= 1"}, options);
-  options = {};
-  options.certificate_tolerance = 0;
-  expect_refused(good, {"certificate_tolerance", "0", "> 0"}, options);
+  const auto with = [](auto change) {
+    CirculantTvProblem problem = instance(0);
+    change(problem);
+    return problem;
+  };
+  expect_refused(with([](auto& p) { p.kernel[3] = NAN; }), {"kernel[3]", "nan", "finite"});
+  expect_refused(with([](auto& p) { p.target[5] = INFINITY; }), {"target[5]", "inf", "finite"});
+  expect_refused(with([](auto& p) { p.target.conservativeResize(239); }),
+                 {"target.size()", "239", "240"});
+  expect_refused({}, {"kernel.size()", "0", ">= 1"});
+  for (const double weight : {0.0, -1.0})
+    expect_refused(with([&](auto& p) { p.total_variation_weight = weight; }),
+                   {"total_variation_weight", "> 0"});
+  expect_refused(with([](auto& p) { p.upper_bound = -2; }), {"upper_bound", "-2", "> 0"});
+  expect_refused(with([](auto& p) { p.budget = -3.0; }), {"budget", "-3", ">= 0"});
+  expect_refused(instance(0), {"max_iterations", "-3", ">= 1"}, {.max_iterations = -3});
+  expect_refused(instance(0), {"certificate_tolerance", "0", "> 0"}, {.certificate_tolerance = 0});
 }
 
 TEST(CirculantTv, RefusesStartsAndProblemsOfOtherLength) {
@@ -262,6 +288,7 @@ TEST(CirculantTv, RefusesStartsAndProblemsOfOtherLength) {
                    Eigen::VectorXd::Constant(240, std::numeric_limits<double>::quiet_NaN())),
       std::invalid_argument);
   EXPECT_THROW(CirculantTvSolver(0), std::invalid_argument);
+  EXPECT_THROW(certificate(problem, Eigen::VectorXd::Zero(239)), std::invalid_argument);
 }
 
 TEST(CirculantTvAdmm, AgreesWithTheActiveSetSolver) {
@@ -269,7 +296,7 @@ TEST(CirculantTvAdmm, AgreesWithTheActiveSetSolver) {
     RandomStream random(3, item);
     const int samples = 24 + 4 * (item % 10);
     const CirculantTvProblem problem =
-        test::random_circulant_tv({samples, item % 3 == 0 ? 2e-4 : 2e-5, item % 2 == 1}, random);
+        random_circulant_tv(samples, item % 3 == 0 ? 2e-4 : 2e-5, item % 2 == 1, random);
     const CirculantTvResult split = solve_circulant_tv_by_admm(problem);
     const CirculantTvResult active = CirculantTvSolver(samples).solve(problem);
     EXPECT_NEAR(split.objective, active.objective, 1e-7 * active.objective) << split.brief();
@@ -280,7 +307,7 @@ TEST(CirculantTvAdmm, AgreesWithTheActiveSetSolver) {
 
 TEST(CirculantTvAdmm, AWarmStartFromTheSolutionKeepsIt) {
   RandomStream random(4, 0);
-  const CirculantTvProblem problem = test::random_circulant_tv({48, 2e-5, false}, random);
+  const CirculantTvProblem problem = random_circulant_tv(48, 2e-5, false, random);
   const CirculantTvResult active = CirculantTvSolver(48).solve(problem);
   const CirculantTvResult split = solve_circulant_tv_by_admm(problem, {}, active.x);
   EXPECT_NEAR(split.objective, active.objective, 1e-9 * active.objective);
@@ -288,7 +315,7 @@ TEST(CirculantTvAdmm, AWarmStartFromTheSolutionKeepsIt) {
 
 TEST(CirculantTvAdmm, ReportsThatItRanOutOfSteps) {
   RandomStream random(5, 0);
-  const CirculantTvProblem problem = test::random_circulant_tv({48, 2e-5, true}, random);
+  const CirculantTvProblem problem = random_circulant_tv(48, 2e-5, true, random);
   CirculantTvAdmmOptions options;
   options.max_iterations = 3;
   const CirculantTvResult result = solve_circulant_tv_by_admm(problem, options);
@@ -298,8 +325,7 @@ TEST(CirculantTvAdmm, ReportsThatItRanOutOfSteps) {
 }
 
 TEST(CirculantTvAdmm, RefusesBadOptions) {
-  RandomStream random(6, 0);
-  const CirculantTvProblem problem = test::random_circulant_tv({48, 2e-5, true}, random);
+  const CirculantTvProblem problem = instance(5, 2e-5, 48);
   CirculantTvAdmmOptions options;
   options.tolerance = -1;
   EXPECT_THROW(solve_circulant_tv_by_admm(problem, options), std::invalid_argument);
@@ -379,7 +405,7 @@ TEST(CirculantTvCertificate, ReportsInfeasibility) {
 TEST(CirculantTvCertificate, BoundsTheGainOfAnyIntervalMove) {
   for (int item = 0; item < 40; ++item) {
     RandomStream random(2, item);
-    const CirculantTvProblem problem = test::random_circulant_tv({40, 2e-5, item % 2 == 1}, random);
+    const CirculantTvProblem problem = random_circulant_tv(40, 2e-5, item % 2 == 1, random);
     Eigen::VectorXd x(40);
     for (double& value : x) value = std::floor(3 * random.uniform()) / 2 * problem.upper_bound;
     CirculantTvProblem unlimited = problem;
@@ -400,11 +426,6 @@ TEST(CirculantTvCertificate, BoundsTheGainOfAnyIntervalMove) {
     EXPECT_LE(gain, violation * 40 + 1e-3);
     EXPECT_GT(violation, 0.1);
   }
-}
-
-TEST(CirculantTvCertificate, RefusesAnotherLength) {
-  EXPECT_THROW(certificate(denoising_problem(1, {}), Eigen::VectorXd::Zero(59)),
-               std::invalid_argument);
 }
 
 }  // namespace

@@ -22,6 +22,18 @@ namespace {
 constexpr int samples = 24, exposures = 3, pixels = 70;
 constexpr int odd = 25;  // 100 depths, not a multiple of the vector length 8
 
+std::vector<Waveform> waveforms_of(const Eigen::MatrixXd& columns) {
+  std::vector<Waveform> waveforms;
+  for (const auto& column : columns.colwise()) waveforms.push_back(Waveform::sampled(column));
+  return waveforms;
+}
+
+CodeSet code_set(const Eigen::MatrixXd& modulation, const Eigen::MatrixXd& demodulation) {
+  return CodeSet::create("code", static_cast<int>(modulation.rows()),
+                         static_cast<int>(demodulation.cols() / modulation.cols()),
+                         waveforms_of(modulation), waveforms_of(demodulation));
+}
+
 Camera camera_of(const char* name, Readout readout) {
   Camera camera = built_in_camera(name);
   camera.samples = samples;
@@ -38,7 +50,12 @@ std::vector<Camera> cameras() {
 }
 
 struct Setting {
-  explicit Setting(const Camera& its) : camera(its), steps(camera, samples, exposures) {
+  explicit Setting(const Camera& its)
+      : camera(its),
+        steps(camera, camera.samples, exposures),
+        modulation(camera.samples, exposures),
+        demodulation(camera.samples, 2 * exposures) {
+    const int samples = camera.samples;
     RandomStream random(5, 1);
     for (int e = 0; e < exposures; ++e)
       for (int n = 0; n < samples; ++n) {
@@ -60,7 +77,7 @@ struct Setting {
 
   Camera camera;
   CodeGradients steps;
-  Eigen::MatrixXd modulation{samples, exposures}, demodulation{samples, 2 * exposures};
+  Eigen::MatrixXd modulation, demodulation;
   MeasurementTable table;
   std::vector<double> depth_bin, signal, ambient, weight;
 };
@@ -95,13 +112,7 @@ TEST(CodeGradients, ValuesMatchTheLibrary) {
   for_each_target([] {
     for (const Camera& camera : cameras()) {
       const Setting setting(camera);
-      std::vector<Waveform> modulation, demodulation;
-      for (const auto& column : setting.modulation.colwise())
-        modulation.push_back(Waveform::sampled(column));
-      for (const auto& column : setting.demodulation.colwise())
-        demodulation.push_back(Waveform::sampled(column));
-      const ForwardModel model(CodeSet::create("code", samples, 2, modulation, demodulation),
-                               camera);
+      const ForwardModel model(code_set(setting.modulation, setting.demodulation), camera);
       CodeGradients::Rows mean, variance;
       setting.steps.electrons(setting.table, setting.light(), mean, variance);
       for (int p = 0; p < pixels; ++p) {
@@ -172,32 +183,20 @@ TEST(CodeGradients, AdjointsMatchFiniteDifferences) {
 
 TEST(CodeGradients, DepthsThatDoNotFillAVectorAreHandled) {
   for_each_target([] {
-    Camera camera = built_in_camera("paper-10f0");
+    Camera camera = cameras().front();
     camera.samples = odd;
-    Eigen::MatrixXd modulation(odd, exposures), demodulation(odd, exposures);
-    std::vector<Waveform> of_light, of_sensor;
-    for (int e = 0; e < exposures; ++e) {
-      for (int n = 0; n < odd; ++n) {
-        const double turn = 2.0 * 3.14159265358979 * double(n) / odd;
-        modulation(n, e) = 1.0 + 0.9 * std::cos(turn);
-        demodulation(n, e) = 0.5 + 0.4 * std::cos(turn - 2.1 * e);
-      }
-      of_light.push_back(Waveform::sampled(modulation.col(e)));
-      of_sensor.push_back(Waveform::sampled(demodulation.col(e)));
-    }
-    const CodeGradients steps(camera, odd, exposures);
-    const MeasurementTable table = steps.measure(modulation, demodulation);
-    const CramerRaoBound bound(
-        ForwardModel(CodeSet::create("code", odd, 1, of_light, of_sensor), camera), camera,
-        NoiseInformation::mean, 4);
+    const Setting setting(camera);
+    const CodeGradients& steps = setting.steps;
+    const ForwardModel model(code_set(setting.modulation, setting.demodulation), camera);
+    const CramerRaoBound bound(model, camera, NoiseInformation::mean, 4);
     const OperatingPoint points[] = {{1e5, 1e4}, {0.0, 1e4}};
-    const Eigen::MatrixXd deviation_m = steps.depth_deviation_m(table, points);
+    const Eigen::MatrixXd deviation_m = steps.depth_deviation_m(setting.table, points);
     ASSERT_EQ(deviation_m.rows(), 4 * odd);
     EXPECT_TRUE(deviation_m.col(0).isApprox(bound.sigma_m(points[0]), 1e-8));
     EXPECT_TRUE((deviation_m.col(1).array() == INFINITY).all()) << "no light tells no depth";
     const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(4 * odd, 2);
-    const PixelGradient by = steps.pull_back_depth_deviation(table, points, ones);
-    expect_gradient(table, by.table, [&](const MeasurementTable& moved) {
+    const PixelGradient by = steps.pull_back_depth_deviation(setting.table, points, ones);
+    expect_gradient(setting.table, by.table, [&](const MeasurementTable& moved) {
       return steps.depth_deviation_m(moved, points).col(0).sum();
     });
     EXPECT_EQ(by.signal_e_per_s[1], 0.0);
@@ -235,17 +234,25 @@ SampledCode random_code(int samples, int exposures, int taps) {
   return code;
 }
 
-CodeSet code_set(const SampledCode& code, int taps) {
-  std::vector<Waveform> m, d;
-  for (Eigen::Index e = 0; e < code.modulation.cols(); ++e)
-    m.push_back(Waveform::sampled(code.modulation.col(e)));
-  for (Eigen::Index i = 0; i < code.demodulation.cols(); ++i)
-    d.push_back(Waveform::sampled(code.demodulation.col(i)));
-  return CodeSet::create("random", code.samples(), taps, m, d);
-}
-
 Camera uneven(Camera camera) {
   camera.sensor.tap_mismatch = 0.08;
+  return camera;
+}
+
+/// Weights of a mixer as two buckets.
+SampledCode random_weights(int samples, int exposures) {
+  SampledCode code = random_code(samples, exposures, 2);
+  for (int e = 0; e < exposures; ++e)
+    code.demodulation.col(2 * e + 1) = 1.0 - code.demodulation.col(2 * e).array();
+  return code;
+}
+
+Camera analog_mixer() {
+  Camera camera = camera_with(1, Readout::separate, 0.7);
+  camera.sensor.demodulation = Demodulation::weight;
+  camera.sensor.modulation_contrast = 0.7;
+  camera.sensor.dark_current_e_per_s = 400.0;
+  camera.sensor.binary = false;
   return camera;
 }
 
@@ -254,9 +261,12 @@ TEST(SampledCamera, AgreesWithTheForwardModel) {
        {camera_with(1, Readout::separate, 1.0), camera_with(2, Readout::difference, 0.7),
         camera_with(3, Readout::separate, 0.6, "paper-30x"),
         uneven(camera_with(1, Readout::separate, 1.0)),
-        uneven(camera_with(2, Readout::difference, 0.7))}) {
-    const SampledCode code = random_code(40, 3, camera.sensor.taps);
-    const ForwardModel model(code_set(code, camera.sensor.taps), camera);
+        uneven(camera_with(2, Readout::difference, 0.7)), analog_mixer()}) {
+    const bool is_mixer = camera.sensor.demodulation == Demodulation::weight;
+    const SampledCode code =
+        is_mixer ? random_weights(40, 3) : random_code(40, 3, camera.sensor.taps);
+    const CodeSet set = code_set(code.modulation, code.demodulation);
+    const ForwardModel model(is_mixer ? set.signed_of_buckets() : set, camera);
     const SampledCamera sampled(camera, 40, 3);
     const MeasurementTable table = sampled.measure(code).table;
     EXPECT_LT((table.correlation - model.correlation_table(40)).cwiseAbs().maxCoeff(), 1e-6);
@@ -285,68 +295,10 @@ TEST(SampledCamera, AccountsForAmbientLightLeakedByUnevenBuckets) {
   }
 }
 
-/// Weights of a mixer as two buckets.
-SampledCode random_weights(int samples, int exposures) {
-  SampledCode code = random_code(samples, exposures, 2);
-  for (int e = 0; e < exposures; ++e)
-    code.demodulation.col(2 * e + 1) = 1.0 - code.demodulation.col(2 * e).array();
-  return code;
-}
-
-Camera analog_mixer() {
-  Camera camera = camera_with(1, Readout::separate, 0.7);
-  camera.sensor.demodulation = Demodulation::weight;
-  camera.sensor.modulation_contrast = 0.7;
-  camera.sensor.dark_current_e_per_s = 400.0;
-  camera.sensor.binary = false;
-  return camera;
-}
-
-TEST(SampledCamera, AgreesWithTheForwardModelForAMixer) {
-  const Camera camera = analog_mixer();
-  const SampledCode code = random_weights(40, 3);
-  const ForwardModel model(code_set(code, 2).signed_of_buckets(), camera);
-  const SampledCamera sampled(camera, 40, 3);
-  const MeasurementTable table = sampled.measure(code).table;
-  EXPECT_LT((table.correlation - model.correlation_table(40)).cwiseAbs().maxCoeff(), 1e-6);
-  EXPECT_LT((table.ambient_gain - model.ambient_gain()).cwiseAbs().maxCoeff(), 1e-12);
-  const Return light{3e4, 17.0};
-  const Eigen::VectorXd variance =
-      sampled.exposure_s().cwiseProduct(3e4 * table.shot().row(17).transpose() +
-                                        2e4 * table.shot_ambient()) +
-      sampled.constant_variance_e2();
-  EXPECT_LT((variance - model.variance_e2({&light, 1}, 2e4)).cwiseAbs().maxCoeff(), 0.02);
-}
-
-TEST(SampledCamera, GradientIncludesTheSquaresOfWeights) {
-  const SampledCamera sampled(analog_mixer(), 40, 3);
-  SampledCode code = random_weights(40, 3), direction = code;
-  MeasurementTable weights = sampled.measure(code).table;
-  RandomStream random(3, 0);
-  for (Eigen::MatrixXd* m : {&weights.correlation, &weights.shot_correlation, &direction.modulation,
-                             &direction.demodulation})
-    for (double& v : m->reshaped()) v = random.normal();
-  const auto value = [&](double step) {
-    SampledCode moved = code;
-    moved.modulation += step * direction.modulation;
-    moved.demodulation += step * direction.demodulation;
-    const MeasurementTable t = sampled.measure(moved).table;
-    return t.correlation.cwiseProduct(weights.correlation).sum() +
-           t.shot_correlation.cwiseProduct(weights.shot_correlation).sum() +
-           t.ambient_gain.dot(weights.ambient_gain) +
-           t.shot_ambient_gain.dot(weights.shot_ambient_gain);
-  };
-  const SampledCode gradient = sampled.pull_back(sampled.measure(code), weights);
-  constexpr double step = 1e-4;
-  EXPECT_NEAR(gradient.modulation.cwiseProduct(direction.modulation).sum() +
-                  gradient.demodulation.cwiseProduct(direction.demodulation).sum(),
-              (value(step) - value(-step)) / (2 * step), 1e-6);
-}
-
-TEST(SampledCamera, GradientIsTheDerivativeAlongEveryDirection) {
-  const Camera camera = camera_with(2, Readout::difference, 0.7);
-  const SampledCamera sampled(camera, 40, 3);
-  SampledCode code = random_code(40, 3, 2), direction = code;
+/// Compares the derivative along a random direction with a central difference.
+void expect_derivative(const SampledCamera& sampled, const SampledCode& code, double step,
+                       double tolerance) {
+  SampledCode direction = code;
   MeasurementTable weights = sampled.measure(code).table;
   RandomStream random(2, 0);
   for (Eigen::MatrixXd* m : {&weights.correlation, &weights.shot_correlation, &direction.modulation,
@@ -354,10 +306,10 @@ TEST(SampledCamera, GradientIsTheDerivativeAlongEveryDirection) {
     for (double& v : m->reshaped()) v = random.normal();
   for (Eigen::VectorXd* m : {&weights.ambient_gain, &weights.shot_ambient_gain})
     for (double& v : m->reshaped()) v = random.normal();
-  const auto value = [&](double step) {
+  const auto value = [&](double by) {
     SampledCode moved = code;
-    moved.modulation += step * direction.modulation;
-    moved.demodulation += step * direction.demodulation;
+    moved.modulation += by * direction.modulation;
+    moved.demodulation += by * direction.demodulation;
     const MeasurementTable t = sampled.measure(moved).table;
     return t.correlation.cwiseProduct(weights.correlation).sum() +
            t.shot_correlation.cwiseProduct(weights.shot_correlation).sum() +
@@ -365,10 +317,17 @@ TEST(SampledCamera, GradientIsTheDerivativeAlongEveryDirection) {
            t.shot_ambient_gain.dot(weights.shot_ambient_gain);
   };
   const SampledCode gradient = sampled.pull_back(sampled.measure(code), weights);
-  // Bilinear in the waveforms: central differences are exact.
   EXPECT_NEAR(gradient.modulation.cwiseProduct(direction.modulation).sum() +
                   gradient.demodulation.cwiseProduct(direction.demodulation).sum(),
-              (value(0.5) - value(-0.5)), 1e-9);
+              (value(step) - value(-step)) / (2.0 * step), tolerance);
+}
+
+TEST(SampledCamera, GradientIsTheDerivativeAlongEveryDirection) {
+  // Bilinear in the waveforms: central differences are exact.
+  expect_derivative(SampledCamera(camera_with(2, Readout::difference, 0.7), 40, 3),
+                    random_code(40, 3, 2), 0.5, 1e-9);
+  // The gradient of a mixer includes the squares of its weights.
+  expect_derivative(SampledCamera(analog_mixer(), 40, 3), random_weights(40, 3), 1e-4, 1e-6);
 }
 
 }  // namespace

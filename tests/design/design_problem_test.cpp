@@ -116,18 +116,13 @@ TEST(WaveformParameters, GradientMatchesFiniteDifferences) {
     };
     const WaveformParameters gradient = pull_back(space, code, sharpness, weights);
     const double step = 1e-5;
-    for (Eigen::Index i = 0; i < at.modulation.size(); ++i) {
-      WaveformParameters up = at, down = at;
-      up.modulation(i) += step;
-      down.modulation(i) -= step;
-      EXPECT_NEAR(gradient.modulation(i), (value(up) - value(down)) / (2 * step), 1e-5);
-    }
-    for (Eigen::Index i = 0; i < at.demodulation.size(); ++i) {
-      WaveformParameters up = at, down = at;
-      up.demodulation(i) += step;
-      down.demodulation(i) -= step;
-      EXPECT_NEAR(gradient.demodulation(i), (value(up) - value(down)) / (2 * step), 1e-5);
-    }
+    for (auto arm : {&WaveformParameters::modulation, &WaveformParameters::demodulation})
+      for (Eigen::Index i = 0; i < (at.*arm).size(); ++i) {
+        WaveformParameters up = at, down = at;
+        (up.*arm)(i) += step;
+        (down.*arm)(i) -= step;
+        EXPECT_NEAR((gradient.*arm)(i), (value(up) - value(down)) / (2 * step), 1e-5);
+      }
   }
 }
 
@@ -169,13 +164,7 @@ DesignProblem problem_with(int taps, double shortest_periods = 0.0) {
 }
 
 SampledCode rendered(const DesignProblem& problem, double steepness) {
-  RandomStream random(4, 0);
-  const WaveformSpace& space = problem.space;
-  WaveformParameters p{Eigen::MatrixXd(space.cells, space.exposures),
-                       Eigen::MatrixXd(space.cells, space.exposures * space.columns())};
-  for (double& v : p.modulation.reshaped()) v = random.normal();
-  for (double& v : p.demodulation.reshaped()) v = random.normal();
-  return render(space, p, {steepness, steepness});
+  return render(problem.space, random_parameters(problem.space, 4), {steepness, steepness});
 }
 
 TEST(SwitchedCode, ReadsRunsFromCellsRoundThePeriod) {

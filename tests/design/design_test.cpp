@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "design/chips/pair_choice.hpp"
+#include "refusal.hpp"
 #include "same_code.hpp"
 #include "small_design.hpp"
 #include "tofsmith/core/error.hpp"
@@ -180,14 +181,11 @@ TEST(Design, StopsOnRequestAtAnyTime) {
 }
 
 std::string refusal(const Camera& camera, const DesignOptions& options) {
-  try {
+  return refusal_of([&] {
     design(camera, options, [](double, std::string_view) -> bool {
       throw std::runtime_error("work began before the check");
     });
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  });
 }
 
 TEST(Design, EffortScalesSearchesOnly) {

@@ -45,19 +45,6 @@ void expect_same_waveforms(const CodeSet& judged, CodeSet code) {
   expect_same_code(judged, code);
 }
 
-TEST(Judge, TheWinnerIsNeverWorseThanAnyCandidateGiven) {
-  for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
-    const Camera camera = coarse_camera("paper-10f0", kind);
-    const DesignOptions options = small_options();
-    const DesignResult result = judge(camera, families(camera), options);
-    ASSERT_EQ(result.candidates.size(), 3u);
-    for (const Candidate& c : result.candidates)
-      EXPECT_LE(ranking_error_m(result.winner(), camera, options),
-                ranking_error_m(c, camera, options))
-          << c.code.name();
-  }
-}
-
 TEST(Judge, RanksLikeDesign) {
   const Camera camera = coarse_camera("paper-5f0");
   const DesignOptions options = small_options();

@@ -51,6 +51,14 @@ RawView row_of(const std::vector<float>& raw, int measurements) {
                               measurements);
 }
 
+/// Compares all planes.
+void expect_planes_of(const Decoder& decoder, const DeviceDecoder& on_device, const RawView& view,
+                      double brightest_e_per_s) {
+  std::int64_t left = 0;
+  expect_alike(on_device.device().info(), true, decoded(on_device, view, left),
+               decoded(decoder, view), brightest_e_per_s);
+}
+
 /// Planes that do not require the confidence: all but confidence and status.
 constexpr unsigned without_confidence = 0b0101111;
 
@@ -92,9 +100,7 @@ TEST_F(DeviceDecoding, EqualsTheDecoderForRandomCodes) {
   RandomStream random(41, 0);
   for (const RandomCode& code : codes) {
     SCOPED_TRACE(testing::Message() << "K = " << code.measurements << ", N = " << code.samples);
-    DecodingTable table = random_table(code, random);
-    table.saturation_level = 60000.0f;
-    table.lower_saturation_level = -60000.0f;
+    const DecodingTable table = clipped_at(random_table(code, random), 60000.0f);
     expect_what_the_decoder_gives(device(), table, random_pixels(table, 3000, random));
   }
 }
@@ -131,12 +137,10 @@ TEST_F(DeviceDecoding, EqualsTheDecoderForRows) {
 }
 
 TEST_F(DeviceDecoding, UsesTheThresholdsOfTheDecoder) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
   for (const DecodeOptions& thresholds :
        {DecodeOptions{.low_signal_sigma = 50.0}, DecodeOptions{.min_confidence = 0.9999},
         DecodeOptions{.low_signal_sigma = 0.0, .min_confidence = 0.0}})
-    expect_what_the_decoder_gives(device(), table, pixels_at_all_light_levels(table, 400), {},
+    expect_what_the_decoder_gives(device(), table_, pixels_at_all_light_levels(table_, 400), {},
                                   thresholds);
 }
 
@@ -149,9 +153,8 @@ TEST_F(DeviceDecoding, DecodesMeasuredTables) {
 }
 
 TEST_F(DeviceDecoding, ProvesAlmostAllPixels) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 20000, 3);
-  const DeviceDecoder on_device(device(), setup.decoder);
+  const std::vector<float> raw = noisy_pixels(table_, 1e5, 1e4, 20000, 3);
+  const DeviceDecoder on_device(device(), setup_.decoder);
   std::int64_t left = 0;
   decoded(on_device, row_of(raw, 4), left);
   EXPECT_LT(left, 20000 / 50);
@@ -183,39 +186,33 @@ void expect_same_of(const DeviceDecoder& on_device, const Decoder& decoder, int 
   upside_down.data = numbers.data() + (height - 1) * rows.row_stride;
   upside_down.row_stride = -rows.row_stride;
   for (const RawView& view : {rows, planes, every_other, upside_down}) {
+    expect_planes_of(decoder, on_device, view, 1e5);
     std::int64_t left = 0;
-    expect_alike(on_device.device().info(), true, decoded(on_device, view, left),
-                 decoded(decoder, view), 1e5);
     decoded(on_device, view, left, without_confidence);
     EXPECT_LT(left, view.pixels());
   }
 }
 
 TEST_F(DeviceDecoding, ReadsAllTypesAndLayouts) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   constexpr int height = 17, width = 41;
-  std::vector<float> raw = noisy_pixels(setup.decoder.table(), 600.0, 300.0, height * width, 12);
+  std::vector<float> raw = noisy_pixels(table_, 600.0, 300.0, height * width, 12);
   for (float& value : raw) value = std::clamp(std::round(value), 0.0f, 255.0f);
-  const DeviceDecoder on_device(device(), setup.decoder);
-  expect_same_of<float>(on_device, setup.decoder, height, width, raw);
-  expect_same_of<std::uint16_t>(on_device, setup.decoder, height, width, raw);
-  expect_same_of<std::uint8_t>(on_device, setup.decoder, height, width, raw);
-  expect_same_of<double>(on_device, setup.decoder, height, width, raw);
+  const DeviceDecoder on_device(device(), setup_.decoder);
+  expect_same_of<float>(on_device, setup_.decoder, height, width, raw);
+  expect_same_of<std::uint16_t>(on_device, setup_.decoder, height, width, raw);
+  expect_same_of<std::uint8_t>(on_device, setup_.decoder, height, width, raw);
+  expect_same_of<double>(on_device, setup_.decoder, height, width, raw);
 }
 
 TEST_F(DeviceDecoding, UsesAllDigitsOfDoubles) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   // In this ambient light, floats are integers and cannot represent the signal.
   RandomStream random(5, 0);
   std::vector<double> raw;
-  for (const float value : noisy_pixels(setup.decoder.table(), 1e4, 1e8, 4000, 8))
+  for (const float value : noisy_pixels(table_, 1e4, 1e8, 4000, 8))
     raw.push_back(value + random.uniform());
   raw[5] = 1e300;  // a float would be infinite, and the pixel invalid
-  const DeviceDecoder on_device(device(), setup.decoder);
-  const RawView view = RawView::interleaved(raw.data(), 40, 100, 4);
-  std::int64_t left = 0;
-  expect_alike(device().info(), true, decoded(on_device, view, left), decoded(setup.decoder, view),
-               1e6);
+  const DeviceDecoder on_device(device(), setup_.decoder);
+  expect_planes_of(setup_.decoder, on_device, RawView::interleaved(raw.data(), 40, 100, 4), 1e6);
 }
 
 TEST_F(DeviceDecoding, AccountsForTheNoiseOfMeans) {
@@ -225,16 +222,12 @@ TEST_F(DeviceDecoding, AccountsForTheNoiseOfMeans) {
   for (int i = 0; i < 3000; ++i) averaged.push_back(0.5f * static_cast<float>(1 + i % 40));
   RawView view = row_of(raw, 5);
   view.averaged = averaged.data();
-  const DeviceDecoder on_device(device(), setup.decoder);
-  std::int64_t left = 0;
-  expect_alike(device().info(), true, decoded(on_device, view, left), decoded(setup.decoder, view),
-               1e6);
+  expect_planes_of(setup.decoder, DeviceDecoder(device(), setup.decoder), view, 1e6);
 }
 
 TEST_F(DeviceDecoding, EachPlaneIsIndependentOfTheOtherRequestedPlanes) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e3, 1e4, 1000, 9);
-  const DeviceDecoder on_device(device(), setup.decoder);
+  const std::vector<float> raw = noisy_pixels(table_, 3e3, 1e4, 1000, 9);
+  const DeviceDecoder on_device(device(), setup_.decoder);
   std::int64_t left = 0;
   const Outputs all = decoded(on_device, row_of(raw, 4), left);
   for (unsigned planes = 1; planes < 255; planes = planes * 2 + planes % 3)
@@ -242,24 +235,20 @@ TEST_F(DeviceDecoding, EachPlaneIsIndependentOfTheOtherRequestedPlanes) {
 }
 
 TEST_F(DeviceDecoding, LargeFramesAreDecodedInParts) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e3, 1e4, 5000, 9);
-  const DeviceDecoder in_parts(device(), setup.decoder, {.memory_mb = 0.001});
+  const std::vector<float> raw = noisy_pixels(table_, 3e3, 1e4, 5000, 9);
+  const DeviceDecoder in_parts(device(), setup_.decoder, {.memory_mb = 0.001});
   for (const int pixels : {0, 1, 63, 64, 65, 1024, 1025, 5000}) {
     const RawView view = RawView::interleaved(raw.data(), pixels > 0 ? 1 : 0, pixels, 4);
-    std::int64_t left = 0;
-    expect_alike(device().info(), true, decoded(in_parts, view, left), decoded(setup.decoder, view),
-                 1e6);
+    expect_planes_of(setup_.decoder, in_parts, view, 1e6);
   }
 }
 
 TEST_F(DeviceDecoding, OverlappedCopiesChangeNothing) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   constexpr int height = 370, width = 601;  // in four parts
-  std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e4, 1e4, height * width, 9);
+  std::vector<float> raw = noisy_pixels(table_, 3e4, 1e4, height * width, 9);
   const RawView view = RawView::interleaved(raw.data(), height, width, 4);
-  const Outputs expected = decoded(setup.decoder, view);
-  const DeviceDecoder on_device(device(), setup.decoder);
+  const Outputs expected = decoded(setup_.decoder, view);
+  const DeviceDecoder on_device(device(), setup_.decoder);
   std::vector<double> fractions;
   Outputs outputs(static_cast<std::size_t>(view.pixels()));
   on_device.decode(view, outputs.view(), [&](double fraction, std::string_view) {
@@ -274,20 +263,18 @@ TEST_F(DeviceDecoding, OverlappedCopiesChangeNothing) {
 }
 
 TEST_F(DeviceDecoding, RejectsInvalidFrames) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DeviceDecoder on_device(device(), setup.decoder);
+  const DeviceDecoder on_device(device(), setup_.decoder);
   const std::vector<float> raw(15);
   Outputs outputs(3);
   EXPECT_THROW(on_device.decode(RawView::interleaved(raw.data(), 1, 3, 5), outputs.view()),
                InvalidArgument);
-  EXPECT_THROW(DeviceDecoder(device(), setup.decoder, {.memory_mb = 0.0}), InvalidArgument);
+  EXPECT_THROW(DeviceDecoder(device(), setup_.decoder, {.memory_mb = 0.0}), InvalidArgument);
 }
 
 TEST_F(DeviceDecoding, StopsOnRequest) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const std::vector<float> raw(4 * 5000);
   Outputs outputs(5000);
-  const DeviceDecoder in_parts(device(), setup.decoder, {.memory_mb = 0.001});
+  const DeviceDecoder in_parts(device(), setup_.decoder, {.memory_mb = 0.001});
   EXPECT_THROW(in_parts.decode(row_of(raw, 4), outputs.view(),
                                [](double fraction, std::string_view) { return fraction < 0.3; }),
                Interrupted);

@@ -13,13 +13,9 @@ namespace {
 
 class FailingDevice : public OnDevice {
  protected:
-  static constexpr int height = 90, width = 30;
+  static constexpr int height = 90, width = 30, pixels = height * width;
   using Work = std::function<void(Outputs& outputs)>;
 
-  FailingDevice()
-      : setup_("hamiltonian-k4", camera_with("paper-10f0")),
-        filter_(setup_.decoder.table()),
-        raw_(noisy_pixels(setup_.decoder.table(), 1e5, 1e4, height * width, 3)) {}
   void SetUp() override {
     OnDevice::SetUp();
     failure = {};
@@ -65,9 +61,8 @@ class FailingDevice : public OnDevice {
     expect_failure(work);
   }
 
-  DecodeSetup setup_;
-  Filter filter_;
-  std::vector<float> raw_;
+  Filter filter_{table_};
+  std::vector<float> raw_ = noisy_pixels(table_, 1e5, 1e4, pixels, 3);
 };
 
 TEST_F(FailingDevice, FailsToDecodeAndRecovers) {
@@ -84,8 +79,8 @@ TEST_F(FailingDevice, FailsToFilterAndRecovers) {
 
 TEST_F(FailingDevice, FailsToAddFramesAndForgetsThem) {
   const DeviceDecoder decoder(device(), setup_.decoder);
-  const TimeFilter time_filter(setup_.decoder.table(), {.before_filter = true});
-  DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
+  const TimeFilter time_filter(table_, {.before_filter = true});
+  DeviceFrames frames(device(), table_, &time_filter);
   expect_error_then_recovery([&](Outputs& outputs) {
     EXPECT_FALSE(frames.has_frame());
     frames.take(view());
@@ -104,7 +99,7 @@ TEST_F(FailingDevice, FailsToAddFramesAndForgetsThem) {
 TEST_F(FailingDevice, FailsToAverageAndForgetsTheFrames) {
   if (!device().info().has_doubles) GTEST_SKIP() << "the device has no doubles";
   const DeviceDecoder decoder(device(), setup_.decoder);
-  DeviceFrames frames(device(), setup_.decoder.table(), nullptr);
+  DeviceFrames frames(device(), table_, nullptr);
   expect_error_then_recovery([&](Outputs& outputs) {
     frames.add(view());
     frames.add(view());

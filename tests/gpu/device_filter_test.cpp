@@ -14,19 +14,16 @@ namespace {
 using DeviceFiltering = OnDevice;
 
 /// Slanted surfaces, an edge, a dark part and a wrap of depth; dim and bright.
-RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
-                            std::uint64_t seed = 1) {
+RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width) {
   const double samples = table.bin_count();
-  return frame_by_pixel(
-      table.measurements(), height, width, seed,
-      [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
-        const bool is_near = 3 * x < width + y % 7;
-        const double bin =
-            is_near ? 0.2 * samples + 0.002 * samples * y : 0.95 * samples + 0.003 * samples * x;
-        const bool is_dark = 5 * y > 4 * height && 2 * x > width;
-        const double signal = is_dark ? 0.0 : is_near ? 2e4 : 4e3 + 1e3 * (y % 50);
-        append_noisy_pixel(table, signal, 1e4, std::fmod(bin, samples), random, raw);
-      });
+  const auto scene = [&](int y, int x) {
+    const bool is_near = 3 * x < width + y % 7;
+    const double bin =
+        is_near ? 0.2 * samples + 0.002 * samples * y : 0.95 * samples + 0.003 * samples * x;
+    const bool is_dark = 5 * y > 4 * height && 2 * x > width;
+    return Seen{std::fmod(bin, samples), is_dark ? 0.0 : is_near ? 2e4 : 4e3 + 1e3 * (y % 50)};
+  };
+  return frame_seen(table, height, width, scene);
 }
 
 void spoil(RawFrames& raw, float saturated) {
@@ -90,30 +87,10 @@ void expect_what_the_filter_gives(const Device& device, const DecodingTable& tab
   tofsmith::expect_alike(device.info(), true, outputs, expected_outputs, 1e6);
 }
 
-struct Case {
-  const char* code;
-  Camera camera;
-};
-
-std::vector<Case> cases() {
-  Camera counts = camera_with("paper-10f0");
-  counts.sensor.adc_bits = 12;
-  counts.sensor.gain_e_per_dn = 2.0;
-  counts.sensor.black_level_dn = 40.0;
-  counts.sensor.dark_current_e_per_s = 1e3;
-  return {{"hamiltonian-k4", camera_with("paper-10f0")},
-          {"hamiltonian-k3", camera_with("paper-10f0")},
-          {"multifrequency-k5", counts},
-          {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}};
-}
-
 TEST_F(DeviceFiltering, EqualsTheFilter) {
-  for (const Case& c : cases()) {
-    SCOPED_TRACE(c.code);
-    const DecodeSetup setup(c.code, c.camera);
-    DecodingTable table = setup.decoder.table();
-    table.saturation_level = 5e4f;
-    table.lower_saturation_level = -5e4f;
+  for (const auto& [code, camera] : filtered_codes()) {
+    SCOPED_TRACE(code);
+    const DecodingTable table = clipped_at(decoding_table_of(code, camera), 5e4f);
     RawFrames raw = frame_of_surfaces(table, 71, 85);
     spoil(raw, 5e4f);
     for (const FilterStrength strength : all_filter_strengths) {
@@ -125,19 +102,16 @@ TEST_F(DeviceFiltering, EqualsTheFilter) {
 }
 
 TEST_F(DeviceFiltering, RoundsLikeEveryInstructionSet) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 40, 50);
-  for_each_target([&] {
-    expect_what_the_filter_gives(device(), setup.decoder.table(), {}, view_of_frame(raw, 0));
-  });
+  const RawFrames raw = frame_of_surfaces(table_, 40, 50);
+  for_each_target(
+      [&] { expect_what_the_filter_gives(device(), table_, {}, view_of_frame(raw, 0)); });
 }
 
 // Simulates a device with other rounding: products are added in two steps instead of one.
 TEST_F(DeviceFiltering, OtherRoundingChangesFewValuesByMoreThanRoundingError) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 120, 160);
+  const RawFrames raw = frame_of_surfaces(table_, 120, 160);
   for (const FilterStrength strength : all_filter_strengths) {
-    const Filter filter(setup.decoder.table(), FilterOptions::of(strength));
+    const Filter filter(table_, FilterOptions::of(strength));
     std::vector<FilteredFrame> there, here;
     for_each_target([&] {
       there.push_back(DeviceFilter(device(), filter).apply(raw));
@@ -148,12 +122,11 @@ TEST_F(DeviceFiltering, OtherRoundingChangesFewValuesByMoreThanRoundingError) {
 }
 
 TEST_F(DeviceFiltering, AcceptsFramesSmallerThanItsWindows) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const Filter filter(setup.decoder.table());
+  const Filter filter(table_);
   const DeviceFilter on_device(device(), filter);
   FilteredFrame reused;
   for (const auto& [height, width] : {std::pair{1, 1}, {1, 40}, {40, 1}, {3, 7}, {33, 8}, {3, 7}}) {
-    const RawFrames raw = frame_of_surfaces(setup.decoder.table(), height, width);
+    const RawFrames raw = frame_of_surfaces(table_, height, width);
     on_device.apply(view_of_frame(raw, 0), reused);
     expect_alike(device(), reused, filter.apply(raw));
   }
@@ -176,8 +149,8 @@ TEST_F(DeviceFiltering, SupportsAnyCodeAndOptions) {
 
 TEST_F(DeviceFiltering, SupportsMeansAndExcludedPixels) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
-    const DecodeSetup setup("square-k4", camera_with("paper-10f0", 2, readout));
-    const DecodingTable& table = setup.decoder.table();
+    const DecodingTable table =
+        decoding_table_of("square-k4", camera_with("paper-10f0", 2, readout));
     const RawFrames raw = frame_of_surfaces(table, 50, 45);
     RawView view = view_of_frame(raw, 0);
     std::vector<float> averaged;
@@ -191,33 +164,28 @@ TEST_F(DeviceFiltering, SupportsMeansAndExcludedPixels) {
 }
 
 TEST_F(DeviceFiltering, ReadsAllTypesAndLayouts) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  RawFrames raw = frame_of_surfaces(table, 30, 44);
+  RawFrames raw = frame_of_surfaces(table_, 30, 44);
   for (float& value : raw.values) value = std::clamp(std::round(value), 0.0f, 65535.0f);
   const std::vector<std::uint16_t> words(raw.values.begin(), raw.values.end());
   std::vector<double> doubles(raw.values.begin(), raw.values.end());
   doubles[7] += 1e-9;
-  expect_what_the_filter_gives(device(), table, {}, RawView::interleaved(words.data(), 30, 44, 4));
-  expect_what_the_filter_gives(device(), table, {}, RawView::planar(doubles.data(), 30, 44, 4));
+  expect_what_the_filter_gives(device(), table_, {}, RawView::interleaved(words.data(), 30, 44, 4));
+  expect_what_the_filter_gives(device(), table_, {}, RawView::planar(doubles.data(), 30, 44, 4));
 }
 
 TEST_F(DeviceFiltering, LargeFramesAreFilteredInBands) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  RawFrames raw = frame_of_surfaces(table, 230, 24);
+  RawFrames raw = frame_of_surfaces(table_, 230, 24);
   spoil(raw, 1e3f);
   Image<std::uint8_t> left_out(230, 24);
   for (std::size_t i = 0; i < left_out.pixels.size(); ++i) left_out.pixels[i] = i % 17 == 0;
   for (const FilterStrength strength : all_filter_strengths)
     for (const double memory_mb : {0.001, 3.0})
-      expect_what_the_filter_gives(device(), table, FilterOptions::of(strength),
+      expect_what_the_filter_gives(device(), table_, FilterOptions::of(strength),
                                    view_of_frame(raw, 0), {.memory_mb = memory_mb}, left_out);
 }
 
 TEST_F(DeviceFiltering, RejectsInvalidFrames) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const Filter filter(setup.decoder.table());
+  const Filter filter(table_);
   const DeviceFilter on_device(device(), filter);
   FilteredFrame filtered;
   const std::vector<float> raw(40);
@@ -228,16 +196,15 @@ TEST_F(DeviceFiltering, RejectsInvalidFrames) {
   const RawView view = RawView::interleaved(raw.data(), 2, 5, 4);
   EXPECT_THROW(on_device.apply(view, filtered, {}, Image<std::uint8_t>(5, 2)), InvalidArgument);
   EXPECT_THROW(DeviceFilter(device(), filter, {.memory_mb = -1.0}), InvalidArgument);
-  const DeviceDecoder elsewhere(Device::all().front(), setup.decoder);
+  const DeviceDecoder elsewhere(Device::all().front(), setup_.decoder);
   Outputs outputs(10);
   EXPECT_THROW(on_device.decode(view, elsewhere, outputs.view()), InvalidArgument);
 }
 
 TEST_F(DeviceFiltering, StopsOnRequestAndContinuesAfterwards) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const Filter filter(setup.decoder.table());
+  const Filter filter(table_);
   const DeviceFilter on_device(device(), filter);
-  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 40, 30);
+  const RawFrames raw = frame_of_surfaces(table_, 40, 30);
   FilteredFrame filtered;
   double last = 0.0;
   EXPECT_THROW(on_device.apply(view_of_frame(raw, 0), filtered,

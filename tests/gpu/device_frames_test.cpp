@@ -22,14 +22,15 @@ constexpr float float_infinity = std::numeric_limits<float>::infinity();
 /// A moving edge, a slowly drifting part and a part that brightens.
 RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int f) {
   const double samples = table.bin_count();
-  return frame_by_pixel(
-      table.measurements(), height, width, static_cast<std::uint64_t>(f + 1),
-      [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
-        const bool is_near = 3 * x<width + 3 * f, drifts = 2 * y> height;
-        const double bin = (is_near ? 0.2 : 0.7) * samples + (drifts ? 0.001 * f * samples : 0.0);
-        const double signal = is_near ? 2e4 : f > 3 && 4 * y < height ? 3e4 : 5e3;
-        append_noisy_pixel(table, signal, 1e4, std::fmod(bin, samples), random, raw);
-      });
+  const auto scene = [&](int y, int x) {
+    const bool is_near = 3 * x < width + 3 * f;
+    const double drift_bin = 2 * y > height ? 0.001 * f * samples : 0.0;
+    return Seen{std::fmod((is_near ? 0.2 : 0.7) * samples + drift_bin, samples),
+                is_near                   ? 2e4
+                : f > 3 && 4 * y < height ? 3e4
+                                          : 5e3};
+  };
+  return frame_seen(table, height, width, scene, 1e4, static_cast<std::uint64_t>(f + 1));
 }
 
 void spoil(RawFrames& raw, float saturated, int f) {
@@ -47,9 +48,8 @@ class DeviceFramesOf : public OnDevice {
  protected:
   /// Expects equal bits if the device divides like the CPU.
   void expect_same_numbers(const RawView& a, const RawView& b, bool has_thresholds) const {
-    std::vector<float> x(static_cast<std::size_t>(a.pixels() * a.measurements)), y(x.size());
-    copy_pixels(a, 0, a.pixels(), x.data());
-    copy_pixels(b, 0, b.pixels(), y.data());
+    std::vector<float> x = values_of(a), y = values_of(b);
+    ASSERT_EQ(x.size(), y.size());
     x.insert(x.end(), a.averaged, a.averaged + a.pixels());
     y.insert(y.end(), b.averaged, b.averaged + b.pixels());
     if (device().info().divides_as_processor || !has_thresholds)
@@ -104,20 +104,8 @@ std::vector<RawFrames> frames_of_motion(const DecodingTable& table, int height, 
 }
 
 TEST_F(DeviceFramesOf, AreAveragedLikeByTheTimeFilter) {
-  Camera counts = camera_with("paper-10f0");
-  counts.sensor.adc_bits = 12;
-  counts.sensor.gain_e_per_dn = 2.0;
-  counts.sensor.black_level_dn = 40.0;
-  const std::vector<std::pair<const char*, Camera>> cases = {
-      {"hamiltonian-k4", camera_with("paper-10f0")},
-      {"hamiltonian-k3", camera_with("paper-10f0")},
-      {"multifrequency-k5", counts},
-      {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}};
-  for (const auto& [code, camera] : cases) {
-    const DecodeSetup setup(code, camera);
-    DecodingTable table = setup.decoder.table();
-    table.saturation_level = 5e4f;
-    table.lower_saturation_level = -5e4f;
+  for (const auto& [code, camera] : filtered_codes()) {
+    const DecodingTable table = clipped_at(decoding_table_of(code, camera), 5e4f);
     const std::vector<RawFrames> frames = frames_of_motion(table, 43, 61, 7);
     for (const bool before_filter : {false, true}) {
       SCOPED_TRACE(testing::Message() << code << (before_filter ? " before a filter" : ""));
@@ -129,24 +117,20 @@ TEST_F(DeviceFramesOf, AreAveragedLikeByTheTimeFilter) {
 }
 
 TEST_F(DeviceFramesOf, AreAveragedLikeByEveryInstructionSet) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const std::vector<RawFrames> frames = frames_of_motion(setup.decoder.table(), 30, 41, 4);
+  const std::vector<RawFrames> frames = frames_of_motion(table_, 30, 41, 4);
   for_each_target([&] {
-    expect_what_the_time_filter_gives(setup.decoder.table(), {.before_filter = true},
-                                      views_of(frames));
+    expect_what_the_time_filter_gives(table_, {.before_filter = true}, views_of(frames));
   });
 }
 
 TEST_F(DeviceFramesOf, MayBeMeansOfAnyTypeAndLayout) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
   std::vector<float> averaged;
   for (int i = 0; i < 20 * 31; ++i)
     averaged.push_back(i % 31 == 0 ? 0.0f : 0.5f * static_cast<float>(2 + i % 4));
   std::vector<std::vector<std::uint16_t>> words;
   std::vector<std::vector<double>> doubles;
   for (int f = 0; f < 3; ++f) {
-    RawFrames raw = frame_of_motion(table, 20, 31, f);
+    RawFrames raw = frame_of_motion(table_, 20, 31, f);
     for (float& value : raw.values) value = std::clamp(std::round(value), 0.0f, 65535.0f);
     words.emplace_back(raw.values.begin(), raw.values.end());
     doubles.emplace_back(raw.values.begin(), raw.values.end());
@@ -159,23 +143,21 @@ TEST_F(DeviceFramesOf, MayBeMeansOfAnyTypeAndLayout) {
     views.back().averaged = averaged.data();
   }
   for (const bool before_filter : {false, true})
-    expect_what_the_time_filter_gives(table, {.before_filter = before_filter}, views);
+    expect_what_the_time_filter_gives(table_, {.before_filter = before_filter}, views);
 }
 
 TEST_F(DeviceFramesOf, AveragedFramesStayOnTheDeviceForFilterAndDecoder) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
   if (!device().info().divides_as_processor) GTEST_SKIP() << "it rounds otherwise";
-  const std::vector<RawFrames> frames = frames_of_motion(table, 130, 40, 3);
-  const Filter filter(table);
+  const std::vector<RawFrames> frames = frames_of_motion(table_, 130, 40, 3);
+  const Filter filter(table_);
   Image<std::uint8_t> left_out(130, 40);
   for (std::size_t i = 0; i < left_out.pixels.size(); ++i) left_out.pixels[i] = i % 17 == 0;
   for (const double memory_mb : {0.001, 512.0}) {  // in bands, and whole
     const TimeFilterOptions options{.before_filter = true};
-    const TimeFilter time_filter(table, options);
-    TimeFilter here(table, options);
-    DeviceFrames there(device(), table, &time_filter);
-    const DeviceDecoder decoder(device(), setup.decoder, {.memory_mb = memory_mb});
+    const TimeFilter time_filter(table_, options);
+    TimeFilter here(table_, options);
+    DeviceFrames there(device(), table_, &time_filter);
+    const DeviceDecoder decoder(device(), setup_.decoder, {.memory_mb = memory_mb});
     const DeviceFilter on_device(device(), filter, {.memory_mb = memory_mb});
     for (const RawFrames& frame : frames) {
       FilteredFrame filtered, expected;
@@ -186,35 +168,30 @@ TEST_F(DeviceFramesOf, AveragedFramesStayOnTheDeviceForFilterAndDecoder) {
       there.decode(on_device, decoder, outputs.view(), &filtered, {}, left_out);
       filter.apply(*added, expected, {}, left_out);
       EXPECT_EQ(filtered.averaged().pixels, expected.averaged().pixels);
-      setup.decoder.decode(expected.view(), expected_outputs.view());
+      setup_.decoder.decode(expected.view(), expected_outputs.view());
       expect_alike(device().info(), true, outputs, expected_outputs, 1e6);
     }
   }
 }
 
 TEST_F(DeviceFramesOf, AreForgottenOnRequest) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const std::vector<RawFrames> frames = frames_of_motion(table, 20, 30, 2);
-  const TimeFilter filter(table);
-  DeviceFrames there(device(), table, &filter);
+  const std::vector<RawFrames> frames = frames_of_motion(table_, 20, 30, 2);
+  const TimeFilter filter(table_);
+  DeviceFrames there(device(), table_, &filter);
   there.take(view_of_frame(frames[0], 0));
   there.forget();
   EXPECT_THROW(there.numbers(), InvalidArgument);
   there.take(view_of_frame(frames[1], 0));
-  expect_same_numbers(there.numbers(), *TimeFilter(table).add(view_of_frame(frames[1], 0)), true);
+  expect_same_numbers(there.numbers(), *TimeFilter(table_).add(view_of_frame(frames[1], 0)), true);
   there.forget();
-  const RawFrames smaller = frame_of_motion(table, 9, 7, 0);
+  const RawFrames smaller = frame_of_motion(table_, 9, 7, 0);
   there.take(view_of_frame(smaller, 0));
   EXPECT_EQ(there.numbers().height, 9);
 }
 
 TEST_F(DeviceFramesOf, HaveExactMeans) {
   if (!device().info().has_doubles) GTEST_SKIP() << "it has no doubles";
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  DecodingTable table = setup.decoder.table();
-  table.saturation_level = 5e4f;
-  table.lower_saturation_level = -5e4f;
+  const DecodingTable table = clipped_at(table_, 5e4f);
   const Decoder decoder(table);
   const DeviceDecoder after(device(), decoder, {.memory_mb = 0.1});
   DeviceFrames there(device(), table, nullptr);
@@ -258,13 +235,11 @@ TEST_F(DeviceFramesOf, HaveExactMeans) {
 
 TEST_F(DeviceFramesOf, MeansAreAveragedOverTime) {
   if (!device().info().has_doubles) GTEST_SKIP() << "it has no doubles";
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
-  const TimeFilter filter(table);
-  TimeFilter here(table, filter.options());
-  DeviceFrames there(device(), table, &filter);
+  const TimeFilter filter(table_);
+  TimeFilter here(table_, filter.options());
+  DeviceFrames there(device(), table_, &filter);
   for (int f = 0; f < 4; ++f) {
-    const RawFrames a = frame_of_motion(table, 20, 30, f), b = frame_of_motion(table, 20, 30, f);
+    const RawFrames a = frame_of_motion(table_, 20, 30, f), b = frame_of_motion(table_, 20, 30, f);
     std::vector<double> means(a.values.begin(), a.values.end());
     for (std::size_t i = 0; i < means.size(); ++i) means[i] = (means[i] + double{b.values[i]}) / 2;
     const std::vector<float> averaged(20 * 30, 2.0f);
@@ -278,17 +253,15 @@ TEST_F(DeviceFramesOf, MeansAreAveragedOverTime) {
 }
 
 TEST_F(DeviceFramesOf, InvalidFramesAreRejected) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  const DecodingTable& table = setup.decoder.table();
   const DecodeSetup other("hamiltonian-k3", camera_with("paper-10f0"));
-  const TimeFilter of_other(other.decoder.table()), filter(table),
-      looks_ahead(table, {.look_ahead = 1});
-  EXPECT_THAT([&] { DeviceFrames(device(), table, &of_other); },
+  const TimeFilter of_other(other.decoder.table()), filter(table_),
+      looks_ahead(table_, {.look_ahead = 1});
+  EXPECT_THAT([&] { DeviceFrames(device(), table_, &of_other); },
               ThrowsMessage<InvalidArgument>(HasSubstr("must equal those of the table")));
-  EXPECT_THAT([&] { DeviceFrames(device(), table, &looks_ahead); },
+  EXPECT_THAT([&] { DeviceFrames(device(), table_, &looks_ahead); },
               ThrowsMessage<InvalidArgument>(HasSubstr("look_ahead = 1; must be 0 on devices")));
-  EXPECT_THROW(DeviceFrames(device(), table, &filter, {.memory_mb = -1.0}), InvalidArgument);
-  DeviceFrames there(device(), table, &filter);
+  EXPECT_THROW(DeviceFrames(device(), table_, &filter, {.memory_mb = -1.0}), InvalidArgument);
+  DeviceFrames there(device(), table_, &filter);
   const std::vector<float> raw(400);
   EXPECT_THROW(there.take_mean(), InvalidArgument);
   EXPECT_THROW(there.take(RawView::interleaved(raw.data(), 2, 4, 5)), InvalidArgument);
@@ -296,10 +269,10 @@ TEST_F(DeviceFramesOf, InvalidFramesAreRejected) {
   EXPECT_THAT(
       [&] { there.take(RawView::interleaved(raw.data(), 5, 10, 4)); },
       ThrowsMessage<InvalidArgument>(HasSubstr("must equal that of the previous frames, 10")));
-  const DeviceDecoder elsewhere(Device::all().front(), setup.decoder);
+  const DeviceDecoder elsewhere(Device::all().front(), setup_.decoder);
   Outputs outputs(100);
   EXPECT_THROW(there.decode(elsewhere, outputs.view()), InvalidArgument);
-  DeviceFrames means(device(), table, nullptr);
+  DeviceFrames means(device(), table_, nullptr);
   EXPECT_THROW(means.take(RawView::interleaved(raw.data(), 10, 10, 4)), InvalidArgument);
 }
 

@@ -233,13 +233,6 @@ TEST(PointCloud, RejectsValuesThatDoNotMatchThePoints) {
 
 std::pair<std::string, Dash> look(const LineStyle& style) { return {style.colour, style.dash}; }
 
-TEST(ColourAssignment, GivesANameTheSameStyleEveryTime) {
-  ColourAssignment colours;
-  const auto first = look(colours.style("hamiltonian-k4"));
-  for (int i = 0; i < 20; ++i) colours.style("other " + std::to_string(i));
-  EXPECT_EQ(look(colours.style("hamiltonian-k4")), first);
-}
-
 TEST(ColourAssignment, DependsOnTheOrderOfFirstUseOnly) {
   ColourAssignment a, b;
   for (const char* name : {"one", "two", "one", "three"}) a.style(name);

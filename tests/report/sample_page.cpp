@@ -14,62 +14,48 @@
 namespace tofsmith {
 namespace {
 
-constexpr double period_s = 66.7e-9;
+constexpr double period_ns = 66.7;
 constexpr double range_m = 9.99;
 const std::vector<std::string> codes = {
     "sinusoid-k4",  "square-k4",   "multifrequency-k5",        "hamiltonian-k4",
     "factorize-k4", "optimize-k4", "pulsed-multifrequency-k5", "gray-k4"};
 
-double triangle(double phase) { return 4 * std::abs(phase - std::floor(phase + 0.5)) - 1; }
-
-/// Samples f at n points of [0, span).
+/// Samples f at 240 points of [0, span).
 template <typename Function>
-Series sampled(const std::string& name, LineStyle style, double span, int n, Function f) {
+Series sampled(const std::string& name, LineStyle style, double span, Function f) {
   Series series{.name = name, .period = span, .style = style};
-  for (int i = 0; i < n; ++i) {
-    const double phase = static_cast<double>(i) / n;
-    series.x.push_back(phase * span);
-    series.y.push_back(f(phase));
+  for (int i = 0; i < 240; ++i) {
+    series.x.push_back(i / 240.0 * span);
+    series.y.push_back(f(i / 240.0));
   }
   return series;
 }
 
 Figure waveforms(ColourAssignment& colours) {
+  const Axis time_axis{.label = "Time", .unit = "ns"};
   const std::vector<PanelColumn> columns = {
-      {"Modulation",
-       {.label = "Time", .unit = "ns"},
-       {.label = "Light", .unit = "P/P_ave", .from_zero = true}},
-      {"Demodulation", {.label = "Time", .unit = "ns"}, {.label = "Gain"}},
+      {"Modulation", time_axis, {.label = "Light", .unit = "P/P_ave", .from_zero = true}},
+      {"Demodulation", time_axis, {.label = "Gain"}},
       {"Correlation",
        {.label = "Depth", .unit = "m"},
        {.label = "Electrons", .unit = "normalized"}}};
+  const LineStyle style = colours.style("hamiltonian-k4");
   std::vector<PanelRow> rows;
   for (int k = 0; k < 4; ++k) {
-    const double shift = 0.25 * k;
-    const auto on = [&](double duty) {
-      return [=](double p) { return p + shift - std::floor(p + shift) < duty ? 1.0 : 0.0; };
+    const auto wave = [k](double phase) {
+      return 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (phase + 0.25 * k));
     };
-    Series light = sampled("commanded", reference_style(), period_s * 1e9, 240,
-                           [&](double p) { return 15 * on(0.0667)(p); });
-    light.mark = Mark::steps;
-    Series gain = sampled("commanded", reference_style(), period_s * 1e9, 240, on(0.5));
-    gain.mark = Mark::steps;
-    const LineStyle style = colours.style("hamiltonian-k4");
-    const auto smooth = [&](double p) {
-      return 0.5 + 0.5 * std::tanh(6 * std::sin(2 * std::numbers::pi * (p + shift)));
-    };
-    const auto pulse = [&](double p) {
-      return 13 * std::exp(-800 * std::pow(p - shift - std::round(p - shift), 2));
-    };
-    const auto chi = [&](double p) {
-      return 0.5 + 0.5 * std::clamp(1.7 * triangle(p + shift), -1.0, 1.0);
-    };
+    const auto gate = [&](double phase) { return wave(phase) > 0.5 ? 1.0 : 0.0; };
+    Series light = sampled("commanded", reference_style(), period_ns,
+                           [&](double phase) { return 15 * gate(phase); });
+    Series gain = sampled("commanded", reference_style(), period_ns, gate);
+    light.mark = gain.mark = Mark::steps;
     rows.push_back({fmt::format("k = {}", k + 1),
-                    {{light, sampled("band-limited", style, period_s * 1e9, 240, pulse)},
-                     {gain, sampled("band-limited", style, period_s * 1e9, 240, smooth)},
-                     {sampled("target", reference_style(), range_m, 240, chi),
-                      sampled("band-limited", style, range_m, 240,
-                              [&](double p) { return 0.94 * chi(p) + 0.03; })}}});
+                    {{light, sampled("band-limited", style, period_ns,
+                                     [&](double phase) { return 13 * wave(phase); })},
+                     {gain, sampled("band-limited", style, period_ns, wave)},
+                     {sampled("target", reference_style(), range_m, gate),
+                      sampled("band-limited", style, range_m, wave)}}});
   }
   return small_multiples(
       {"waveforms", "Waveforms in and out of the band limit",
@@ -81,12 +67,7 @@ Figure waveforms(ColourAssignment& colours) {
 Figure error_by_signal(ColourAssignment& colours) {
   std::vector<Series> series;
   for (std::size_t c = 0; c < codes.size(); ++c) {
-    Series one{
-        .name = codes[c],
-        .mark = Mark::line_and_markers,
-        .style = colours.style(codes[c]),
-
-    };
+    Series one{.name = codes[c], .mark = Mark::line_and_markers, .style = colours.style(codes[c])};
     for (int i = 0; i <= 4; ++i) {
       one.x.push_back(std::pow(10, 3 + 0.5 * i));
       one.y.push_back(0.6 * std::exp(-0.8 * i - 0.25 * static_cast<double>(c)));
@@ -94,12 +75,7 @@ Figure error_by_signal(ColourAssignment& colours) {
     }
     series.push_back(one);
   }
-  Series bound{
-      .name = "Cramér-Rao bound",
-      .x = series[0].x,
-      .style = reference_style(),
-
-  };
+  Series bound{.name = "Cramér-Rao bound", .x = series[0].x, .style = reference_style()};
   for (const double s : bound.x) bound.y.push_back(20 / s);
   series.push_back(bound);
   return line_figure({"error-by-signal", "Depth error by signal",
@@ -111,37 +87,27 @@ Figure error_by_signal(ColourAssignment& colours) {
 }
 
 Figure convergence(ColourAssignment& colours) {
-  std::vector<Series> series;
-  for (const auto& name : {codes[4], codes[5]}) {
-    Series one{
-        .name = name,
-        .style = colours.style(name),
-
-    };
-    for (int i = 0; i < 200; ++i) {
-      one.x.push_back(i);
-      one.y.push_back(i == 120 ? std::numeric_limits<double>::quiet_NaN()
-                               : std::exp(-0.03 * i * (name == codes[4] ? 1 : 0.6)) + 1e-3);
-    }
-    series.push_back(one);
+  Series one{.name = codes[5], .style = colours.style(codes[5])};
+  for (int i = 0; i < 200; ++i) {
+    one.x.push_back(i);
+    one.y.push_back(i == 120 ? std::numeric_limits<double>::quiet_NaN() : std::exp(-0.03 * i));
   }
   return line_figure({"convergence", "Convergence",
                       "Objective by iteration; the gap is an iterate without a value.", ""},
-                     series, {.label = "Iteration"},
+                     {one}, {.label = "Iteration"},
                      {.label = "Objective", .unit = "m", .logarithmic = true});
 }
 
 Figure coding_curves() {
   std::vector<Curve3d> curves;
-  for (int c = 0; c < 2; ++c) {
-    Curve3d curve{codes[c == 0 ? 0u : 3u], Eigen::MatrixX3d(240, 3), Eigen::VectorXd(240)};
+  for (const std::size_t c : {0u, 3u}) {
+    Curve3d curve{codes[c], Eigen::MatrixX3d(240, 3), Eigen::VectorXd(240)};
+    const double amplitude = c == 0 ? 0.3 : 0.5;
     for (int i = 0; i < 240; ++i) {
-      const double p = i / 240.0;
       for (int k = 0; k < 3; ++k)
-        curve.points(i, k) = c == 0
-                                 ? 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (p - k / 3.0))
-                                 : 0.5 + 0.5 * std::clamp(1.5 * triangle(p - k / 3.0), -1.0, 1.0);
-      curve.values[i] = p * range_m;
+        curve.points(i, k) =
+            0.5 + amplitude * std::cos(2 * std::numbers::pi * (i / 240.0 - k / 3.0));
+      curve.values[i] = i / 240.0 * range_m;
     }
     curves.push_back(curve);
   }
@@ -170,17 +136,13 @@ Figure operating_points() {
       {.label = "Mean depth error", .unit = "m", .map = ColourMap::cividis, .logarithmic = true});
 }
 
+/// A tilted plane with a disc in front of it, and a part without return.
 Image<float> true_depth() {
   Image<float> depth(480, 640);
   for (int r = 0; r < 480; ++r)
-    for (int c = 0; c < 640; ++c) {
-      const double u = (c - 320) / 300.0, v = (r - 240) / 300.0;
-      double z = 2.6 - 1.1 * v;
-      if (std::hypot(u - 0.3, v + 0.1) < 0.35)
-        z = 1.6 - 0.5 * std::sqrt(0.1225 - std::pow(u - 0.3, 2) - std::pow(v + 0.1, 2));
-      if (u > -0.8 && u < -0.3 && v > -0.3 && v < 0.25) z = 1.9 + 0.4 * u;
-      depth(r, c) = static_cast<float>(z);
-    }
+    for (int c = 0; c < 640; ++c)
+      depth(r, c) =
+          std::hypot(r - 200.0, c - 400.0) < 100.0 ? 1.5f : 3.0f - 0.003f * static_cast<float>(r);
   for (int r = 30; r < 90; ++r)
     for (int c = 500; c < 600; ++c) depth(r, c) = std::numeric_limits<float>::quiet_NaN();
   return depth;
@@ -211,7 +173,7 @@ std::vector<Block> depth_blocks() {
       values[i] = z;
     }
   return {image_figure({"depth", "True and decoded depth",
-                        "Top view of a table; white pixels have no return.", ""},
+                        "A disc in front of a plane; white pixels have no return.", ""},
                        {{"true", depth}, {codes[5], good}, {codes[0], poor}},
                        {.label = "Depth", .unit = "m"}),
           image_figure(
@@ -277,10 +239,6 @@ Page sample_page() {
            {"Camera",
             {KeyValueList{{{"Fundamental frequency", "15 MHz"},
                            {"Unambiguous range", "9.99 m"},
-                           {"Exposure", "0.3 s"},
-                           {"Peak factor", "15"},
-                           {"Samples per period", "240"},
-                           {"Read noise", "20 e"},
                            {"Light source", "binary, Hann 150 MHz"},
                            {"Sensor", "1 tap, binary, Hann 150 MHz"}}},
              CodeBlock{

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,9 @@
 #include "decode/search/direction_table.hpp"
 #include "generated_shapes.hpp"
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/filter.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 
@@ -47,23 +50,43 @@ inline Camera camera_with(const std::string& name, int taps = 1,
   return camera;
 }
 
-/// Appends noisy raw values of a pixel (K). Its mean is interpolated linearly between table rows.
-inline void append_noisy_pixel(const DecodingTable& table, double signal, double ambient,
-                               double depth_bin, RandomStream& random, std::vector<float>& raw) {
-  const auto& shot = table.shot();
-  const auto &kappa = table.shot_ambient(), &shot_dark = table.shot_dark();
+inline DecodingTable decoding_table_of(const std::string& code, const Camera& camera) {
+  return make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
+}
+
+struct Moments {
+  double mean_e, variance_e2;
+};
+
+/// Returns the moments of a pixel's measurement k, interpolated linearly between table rows.
+inline Moments moments_of(const DecodingTable& table, double signal, double ambient,
+                          double depth_bin, int k) {
   const double row = depth_bin * table.samples() / table.bin_count();
   const int from = static_cast<int>(row), to = (from + 1) % table.samples();
   const double t = row - from;
+  const double chi = (1 - t) * table.correlation(from, k) + t * table.correlation(to, k);
+  const double shot_chi = (1 - t) * table.shot()(from, k) + t * table.shot()(to, k);
+  const double mean = table.exposure_s[k] * (signal * chi + ambient * table.ambient_gain[k]);
+  const double variance =
+      table.exposure_s[k] * (signal * shot_chi + ambient * table.shot_ambient()[k]) +
+      table.shot_dark()[k] + table.constant_variance_e2[k];
+  return {mean + table.dark_electrons[k], variance};
+}
+
+/// Appends the raw values of a pixel (K).
+/// @param random  noise; none if null
+inline void append_pixel(const DecodingTable& table, double signal, double ambient,
+                         double depth_bin, RandomStream* random, std::vector<float>& raw) {
   for (int k = 0; k < table.measurements(); ++k) {
-    const double chi = (1 - t) * table.correlation(from, k) + t * table.correlation(to, k);
-    const double shot_chi = (1 - t) * shot(from, k) + t * shot(to, k);
-    const double mean = table.exposure_s[k] * (signal * chi + ambient * table.ambient_gain[k]);
-    const double variance = table.exposure_s[k] * (signal * shot_chi + ambient * kappa[k]) +
-                            shot_dark[k] + table.constant_variance_e2[k];
-    const double electrons = mean + table.dark_electrons[k] + std::sqrt(variance) * random.normal();
+    const Moments of = moments_of(table, signal, ambient, depth_bin, k);
+    const double electrons =
+        of.mean_e + (random ? std::sqrt(of.variance_e2) * random->normal() : 0.0);
     raw.push_back(static_cast<float>(electrons / table.gain_e_per_raw[k] + table.black_level[k]));
   }
+}
+inline void append_noisy_pixel(const DecodingTable& table, double signal, double ambient,
+                               double depth_bin, RandomStream& random, std::vector<float>& raw) {
+  append_pixel(table, signal, ambient, depth_bin, &random, raw);
 }
 
 /// Raw values (pixels, K) at random depths.
@@ -90,6 +113,22 @@ RawFrames frame_by_pixel(int measurements, int height, int width, std::uint64_t 
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) append(y, x, random, frame.values);
   return frame;
+}
+
+struct Seen {
+  double depth_bin = 0.0, signal_e_per_s = 0.0;
+};
+using SceneOfPixels = std::function<Seen(int row, int column)>;
+
+inline RawFrames frame_seen(const DecodingTable& table, int height, int width,
+                            const SceneOfPixels& scene, double ambient_e_per_s = 1e4,
+                            std::uint64_t seed = 1) {
+  return frame_by_pixel(table.measurements(), height, width, seed,
+                        [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
+                          const Seen seen = scene(y, x);
+                          append_noisy_pixel(table, seen.signal_e_per_s, ambient_e_per_s,
+                                             seen.depth_bin, random, raw);
+                        });
 }
 
 /// Dim to bright signals, in ambient light from a hundred times the signal to a thousandth of it.
@@ -126,6 +165,34 @@ inline RawFrames frame_of(const std::vector<float>& raw, int measurements) {
   frames.measurements = measurements;
   frames.values = raw;
   return frames;
+}
+
+/// Returns the measurements of all pixels (pixels, K).
+inline std::vector<float> values_of(const RawView& raw) {
+  std::vector<float> values(static_cast<std::size_t>(raw.pixels() * raw.measurements));
+  copy_pixels(raw, 0, raw.pixels(), values.data());
+  return values;
+}
+
+/// Decodes one row of pixels to the usual planes and the residual.
+inline DepthImage decode_row(DecodeMethod method, const DecodingTable& table,
+                             const std::vector<float>& raw, const DecodeOptions& options = {},
+                             const float* averaged = nullptr) {
+  const RawFrames frame = frame_of(raw, table.measurements());
+  RawView view = view_of_frame(frame, 0);
+  view.averaged = averaged;
+  DepthImage image(1, frame.width);
+  image.residual = image.depth_m;
+  make_decoder(method, table, options)->decode(view, DecodedView::of(image));
+  return image;
+}
+
+/// Decodes to the usual planes and the residual.
+inline DepthImage decode_filtered(const Decoder& decoder, const FilteredFrame& filtered) {
+  DepthImage image(filtered.height(), filtered.width());
+  image.residual = image.depth_m;
+  decoder.decode(filtered.view(), DecodedView::of(image));
+  return image;
 }
 
 using LikelihoodSetup = DecoderSetup<LikelihoodDecoder, DecodeOptions>;

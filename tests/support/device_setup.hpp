@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "gpu/device_frames.hpp"
 #include "output_setup.hpp"
@@ -29,9 +31,31 @@ class OnDevice : public testing::Test {
   }
   const Device& device() const { return *device_; }
 
+  const DecodeSetup setup_{"hamiltonian-k4", camera_with("paper-10f0")};
+  const DecodingTable& table_ = setup_.decoder.table();
+
  private:
   std::optional<Device> device_ = device_of_tests();
 };
+
+/// Codes and cameras for filters: of one tap, three measurements, counts, and differences.
+inline std::vector<std::pair<const char*, Camera>> filtered_codes() {
+  Camera counts = camera_with("paper-10f0");
+  counts.sensor.adc_bits = 12;
+  counts.sensor.gain_e_per_dn = 2.0;
+  counts.sensor.black_level_dn = 40.0;
+  counts.sensor.dark_current_e_per_s = 1e3;
+  return {{"hamiltonian-k4", camera_with("paper-10f0")},
+          {"hamiltonian-k3", camera_with("paper-10f0")},
+          {"multifrequency-k5", counts},
+          {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}};
+}
+
+inline DecodingTable clipped_at(DecodingTable table, float level) {
+  table.saturation_level = level;
+  table.lower_saturation_level = -level;
+  return table;
+}
 
 /// @param largest  lower limit of the magnitude that the relative tolerance applies to
 inline void expect_near(const std::vector<float>& a, const std::vector<float>& b, double largest) {

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -16,9 +15,9 @@
 #include "decode/output/pixel_model.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
-#include "decode/search/direction_table.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"
+#include "reference_decoder.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -88,17 +87,15 @@ class Matched {
       : table_(table),
         options_(options),
         projection_(table),
-        directions_(projection_),
         model_(table, projection_),
         posterior_(table, projection_),
         residuals_(table, projection_, options),
         scale_(table),
         raw_(raw),
         pixels_(raw.size() / k_count()) {
-    for (std::size_t i = 0; i < pixels_; ++i) {
-      const Eigen::VectorXd y = electrons(i);
-      bin_.push_back(y.allFinite() ? best_bin(plane_of(y)) : -1);
-    }
+    const ReferenceDecoder reference(table);
+    for (std::size_t i = 0; i < pixels_; ++i)
+      bin_.push_back(electrons(i).allFinite() ? reference.row(&raw[i * k_count()]) : -1);
   }
 
   const DecodingTable& table() const { return table_; }
@@ -146,27 +143,10 @@ class Matched {
     const Eigen::VectorXd q = projection_.basis.transpose() * y;
     return q.norm() <= nothing_left * y.lpNorm<1>() ? Eigen::VectorXd::Zero(q.size()).eval() : q;
   }
-  Eigen::VectorXd direction(std::int32_t n) const {
-    Eigen::VectorXd u(projection_.rank());
-    for (int j = 0; j < u.size(); ++j) u[j] = directions_.direction(n, j);
-    return u;
-  }
-  std::int32_t best_bin(const Eigen::VectorXd& q) const {
-    const auto has_contrast = [this](std::int32_t bin) {
-      return !projection_.curve.row(bin).isZero(0.0);
-    };
-    double best = -std::numeric_limits<double>::infinity();
-    for (std::int32_t n = 0; n < table_.samples(); ++n)
-      if (has_contrast(n)) best = std::max(best, direction(n).dot(q));
-    for (std::int32_t n = 0; n < table_.samples(); ++n)
-      if (has_contrast(n) && direction(n).dot(q) >= best - tie_tolerance * q.norm()) return n;
-    return 0;
-  }
 
   DecodingTable table_;
   DecodeOptions options_;
   AmbientProjection projection_;
-  DirectionTable directions_;
   PixelModel model_;
   LobePosterior posterior_;
   ResidualModel residuals_;

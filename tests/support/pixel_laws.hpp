@@ -6,12 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
-#include "decode/output/lobe_posterior.hpp"
 #include "decode_setup.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/core/units.hpp"
@@ -97,6 +96,30 @@ void expect_negative_signal_is_no_return() {
   EXPECT_EQ(decode_pixels(decoder, {0.0f, 1e6f, 2e5f}).status(0, 0), PixelStatus::ok);
 }
 
+/// Expects the status of pixels that are faint, without signal, saturated or invalid. Only faint
+/// pixels have a depth.
+template <typename Setup>
+void expect_statuses_of_bad_pixels(const char* code) {
+  Camera camera = camera_with("paper-10f0");
+  camera.sensor.full_well_e = 5000.0;
+  const Setup setup(code, camera);
+  const auto pixel_of = [&](float value) {
+    return std::vector<float>(static_cast<std::size_t>(setup.decoder.measurements()), value);
+  };
+  std::vector<float> faint, invalid = pixel_of(5000.0f);
+  setup.append_expected(faint, 50.0, 30.0, 1e4);
+  invalid[1] = not_a_number;
+  for (const auto& [raw, status] : {std::pair{faint, PixelStatus::low_signal},
+                                    {pixel_of(0.0f), PixelStatus::no_return},
+                                    {pixel_of(700.0f), PixelStatus::no_return},
+                                    {pixel_of(5000.0f), PixelStatus::saturated},
+                                    {invalid, PixelStatus::invalid}}) {
+    const DepthImage image = decode_pixels(setup.decoder, raw);
+    EXPECT_EQ(image.status(0, 0), status) << name_of(status);
+    EXPECT_EQ(std::isnan(image.depth_m(0, 0)), status != PixelStatus::low_signal);
+  }
+}
+
 struct PixelEstimates {
   RunningStatistics depth_m, signal, ambient, predicted_m;
   /// Predicted over empirical deviation; with n trials its standard error is 1 / sqrt(2 n).
@@ -123,45 +146,6 @@ PixelEstimates estimates_at(const Setup& setup, double truth_bin, double signal,
     result.predicted_m.add(image.deviation_m(0, i));
   }
   return result;
-}
-
-/// Decodes 20,000 noisy pixels of five measurements at random depths; calls use(confidence,
-/// error_m) for each pixel with a depth.
-template <typename Setup, typename Use>
-void for_each_confidence(const Setup& setup, double signal, double ambient, const Use& use) {
-  constexpr int pixels = 20000;
-  const DepthImage image = decode_pixels(
-      setup.decoder, noisy_pixels(setup.decoder.table(), signal, ambient, pixels, 11));
-  RandomStream random(11, 0);  // repeats the depths drawn by noisy_pixels()
-  for (int i = 0; i < pixels; ++i) {
-    const double range_m = setup.camera.range_m(), truth_m = random.uniform() * range_m;
-    for (int k = 0; k < 5; ++k) random.normal();
-    const double depth_m = image.depth_m(0, i);
-    if (std::isnan(depth_m)) continue;
-    use(static_cast<double>(image.confidence(0, i)),
-        std::abs(circular_difference(depth_m, truth_m, range_m)));
-  }
-}
-
-/// Expects that in each class of confidence the mean confidence equals the fraction of depths
-/// within half the width of the main lobe.
-/// @param signals  logarithmically spaced, starting with almost no light
-template <typename Setup>
-void expect_right_as_often_as_said(const Setup& setup, const std::vector<double>& signals,
-                                   double ambient, double tolerance) {
-  const double far_m = max_lobe_share * setup.camera.range_m();
-  constexpr int classes = 5;
-  std::array<RunningStatistics, classes> said, right;
-  for (const double signal : signals)
-    for_each_confidence(setup, signal, ambient, [&](double confidence, double error_m) {
-      const auto at = static_cast<std::size_t>(confidence * classes);
-      said[std::min<std::size_t>(at, classes - 1)].add(confidence);
-      right[std::min<std::size_t>(at, classes - 1)].add(error_m < far_m);
-    });
-  for (std::size_t c = 0; c < classes; ++c) {
-    EXPECT_GT(said[c].count(), 500);
-    EXPECT_NEAR(said[c].mean(), right[c].mean(), tolerance) << "class " << c;
-  }
 }
 
 }  // namespace tofsmith

@@ -168,8 +168,10 @@ class SimulatedGenerator:
                 return None
             length = re.search(r"LENGTH,(\d+)", wave[0])  # if missing: everything received so far
             end = wave.end() + int(length[1]) if length else len(text)
+            if len(text) < end:
+                return None
             self._received = text[end:]
-            return text[:end] if len(text) >= end else self._keep(text)
+            return text[:end]
         end = text.find("\n")
         block = re.match(r"[^#\n]*#(\d)", text)
         if block:
@@ -182,9 +184,6 @@ class SimulatedGenerator:
             return None
         self._received = text[end + 1:]
         return text[:end]
-
-    def _keep(self, text):
-        self._received = text
 
     def _answer(self, message):
         if self._strikes("closes"):

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Readers of exported waveforms, to verify the writers.
+// Readers of exported waveforms, to verify the writers. They check nothing: missing text is read as
+// NaN or as too few points.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,58 +19,52 @@ struct EasyWaveTable {
   double frequency_hz = 0.0;   ///< of the whole table
   double amplitude_vpp = 0.0;  ///< peak to peak
   double offset_v = 0.0;       ///< middle
-  double phase_deg = 0.0;
-  std::vector<double> volts;  ///< of every row, offset included
+  std::vector<double> volts;   ///< of every row, offset included
 };
 
-/// Reads all dialects, also with LF line ends.
-/// @param file  name for error messages
-/// @throws IoError "file:line: ..." for any other text
-EasyWaveTable parse_easywave_csv(std::string_view text, std::string_view file);
+/// Reads all dialects.
+EasyWaveTable parse_easywave_csv(std::string_view text);
 
-/// Reads a command or a generator's answer to WVDT?. Fields may have any order and blanks; the data
-/// may end with a line feed.
-/// @throws IoError "place: byte N: ..." for any other content
-WvdtCommand parse_wvdt(std::span<const std::byte> bytes, WvdtPoints points, std::string_view place);
+WvdtCommand parse_wvdt(std::span<const std::byte> bytes, WvdtPoints points);
 
 struct KeysightArb {
   double sample_rate_hz = 0.0;
   double high_level_v = 0.0;         ///< of 32767
   double low_level_v = 0.0;          ///< of -32767
-  int marker_point = 0;              ///< point at which the sync output becomes low; 0: missing
+  double marker_point = 0.0;         ///< point at which the sync output becomes low
   std::vector<std::int16_t> points;  ///< from -32767 to 32767
 };
 
-/// @param file  name for error messages
-/// @throws IoError "file:line: ..." for any other text
-KeysightArb parse_keysight_arb(std::string_view text, std::string_view file);
+KeysightArb parse_keysight_arb(std::string_view text);
 
-/// @throws IoError for an incomplete point or a point below -32767
-std::vector<std::int16_t> parse_keysight_dac_bytes(std::span<const std::byte> bytes,
-                                                   std::string_view place);
+std::vector<std::int16_t> parse_keysight_dac_bytes(std::span<const std::byte> bytes);
 
 /// Returns the points, 0 to 16383.
-/// @throws IoError "file: byte N: ..." for any other content
-std::vector<std::int32_t> parse_tektronix_tfw(std::span<const std::byte> bytes,
-                                              std::string_view file);
+std::vector<std::int32_t> parse_tektronix_tfw(std::span<const std::byte> bytes);
 
 struct TektronixWfm {
-  double sample_rate_hz = 0.0;        ///< 0: the file has no CLOCK
+  double sample_rate_hz = 0.0;
   std::vector<float> values;          ///< from -1 to 1, full scale of the DAC
   std::vector<std::uint8_t> markers;  ///< bit 0: marker 1, bit 1: marker 2
 };
 
-/// @throws IoError "file: byte N: ..." for any other content
-TektronixWfm parse_tektronix_wfm(std::span<const std::byte> bytes, std::string_view file);
+TektronixWfm parse_tektronix_wfm(std::span<const std::byte> bytes);
 
-/// A block at the beginning of `bytes`.
-struct Ieee488Block {
-  std::span<const std::byte> data;
-  std::size_t size = 0;  ///< size of the block including its header
+/// Returns the data of the block at the beginning of `bytes`.
+std::span<const std::byte> parse_ieee488_block(std::span<const std::byte> bytes);
+
+/// A language of pattern_memory.hpp, which writes one word per line.
+struct PatternSyntax {
+  std::string_view begin;  ///< end of the text before the words
+  std::string_view mark;   ///< text before the digits of each word
+  int radix = 16;
 };
 
-/// @param place  name for error messages, such as a file name
-/// @throws IoError "place: byte N: ..." if there is no block or it is shorter than its length field
-Ieee488Block parse_ieee488_block(std::span<const std::byte> bytes, std::string_view place);
+struct PatternWords {
+  int digits = 0;  ///< of the first word
+  std::vector<std::uint64_t> words;
+};
+
+PatternWords parse_pattern(std::string_view text, const PatternSyntax& syntax);
 
 }  // namespace tofsmith

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "waveforms/pattern_memory.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "damaged_files.hpp"
+#include "core/shared/random.hpp"
 #include "io/shared/read_file.hpp"
-#include "pattern_reader.hpp"
+#include "waveform_readers.hpp"
 
 namespace tofsmith {
 namespace {
@@ -18,16 +19,16 @@ struct Language {
   std::string file;
   std::string (*write)(const PatternMemory&);
   PatternSyntax syntax;
-  bool says_width;
+  const char* width;  ///< text with the bits of a word, or with the highest bit
 };
 
 const Language languages[] = {
-    {"pattern.coe", xilinx_coe, PatternSyntax::coe, false},
-    {"pattern.mif", intel_mif, PatternSyntax::mif, true},
-    {"pattern.mem", verilog_mem, PatternSyntax::mem, false},
-    {"pattern.sv", systemverilog_package, PatternSyntax::systemverilog, true},
-    {"pattern.vhd", vhdl_package, PatternSyntax::vhdl, true},
-    {"pattern.h", c_header, PatternSyntax::c, true},
+    {"pattern.coe", xilinx_coe, {"vector=\n", ""}, ""},
+    {"pattern.mif", intel_mif, {"BEGIN\n", " : "}, "WIDTH = {0};"},
+    {"pattern.mem", verilog_mem, {"", ""}, ""},
+    {"pattern.sv", systemverilog_package, {"'{\n", "'h"}, "logic [{1}:0]"},
+    {"pattern.vhd", vhdl_package, {":= (\n", "\"", 2}, "std_logic_vector({1} downto 0)"},
+    {"pattern.h", c_header, {"= {\n", "0x"}, "_WORD_BITS {0}\n"},
 };
 
 PatternMemory memory_of(int word_bits, std::vector<std::uint64_t> words) {
@@ -66,10 +67,11 @@ TEST(PatternMemory, ReadsBackExactlyAtEveryWidth) {
       words.push_back((std::uint64_t{random()} << 32 | random()) >> (64 - bits));
     const PatternMemory memory = memory_of(bits, words);
     for (const Language& language : languages) {
-      const PatternWords back =
-          parse_pattern(language.write(memory), language.syntax, language.file);
+      const std::string text = language.write(memory);
+      const PatternWords back = parse_pattern(text, language.syntax);
       EXPECT_EQ(back.words, words) << language.file << " " << bits;
-      EXPECT_EQ(back.word_bits, language.says_width ? bits : 0) << language.file;
+      EXPECT_EQ(back.digits, language.syntax.radix == 2 ? bits : (bits + 3) / 4) << language.file;
+      EXPECT_THAT(text, HasSubstr(fmt::format(fmt::runtime(language.width), bits, bits - 1)));
     }
   }
 }
@@ -113,55 +115,6 @@ TEST(PatternMemory, RejectsContentThatDoesNotFitIntoWords) {
   other.levels = 1 << 16;
   EXPECT_THROW(pattern_memory(std::vector{other, other, other, other}, 1, ""),
                std::invalid_argument);
-}
-
-TEST(PatternParser, ReadsFilesOfOtherTools) {
-  const auto words = [](std::string_view text, PatternSyntax syntax) {
-    return parse_pattern(text, syntax, "f").words;
-  };
-  using Words = std::vector<std::uint64_t>;
-  EXPECT_EQ(words("; ROM\nMEMORY_INITIALIZATION_RADIX = 2 ; binary\n"
-                  "MEMORY_INITIALIZATION_VECTOR = 0, 101,\n11;",
-                  PatternSyntax::coe),
-            (Words{0, 5, 3}));
-  EXPECT_EQ(
-      words("WIDTH=8;\nDEPTH=6;\nADDRESS_RADIX=HEX;\nDATA_RADIX=BIN;\n% all of\nit %\nCONTENT "
-            "BEGIN\n[0..3] : 101; -- four\n4 : 1 11;\nEND;",
-            PatternSyntax::mif),
-      (Words{5, 5, 5, 5, 1, 3}));
-  EXPECT_EQ(words("/* a\nb */ 0f 1_0 // c\nFF", PatternSyntax::mem), (Words{15, 16, 255}));
-}
-
-TEST(PatternParser, ReportsErrors) {
-  const auto error = [](std::string_view text, PatternSyntax syntax) {
-    return io_error_of([&] { parse_pattern(text, syntax, "f"); });
-  };
-  EXPECT_THAT(error("radix=16;", PatternSyntax::coe), HasSubstr("f: found no memory_init"));
-  EXPECT_THAT(
-      error("memory_initialization_radix=8;\nmemory_initialization_vector=1;", PatternSyntax::coe),
-      HasSubstr("found the radix 8; expected 2, 10 or 16"));
-  const std::string mif = "DEPTH=2;WIDTH=4;ADDRESS_RADIX=UNS;DATA_RADIX=HEX;CONTENT BEGIN ";
-  EXPECT_THAT(error(mif + "0:1; END;", PatternSyntax::mif), HasSubstr("no word at the address 1"));
-  EXPECT_THAT(error(mif + "0:1; 2:1; END;", PatternSyntax::mif), HasSubstr("found the address 2"));
-  EXPECT_THAT(error(mif + "0:1; 1:1f; END;", PatternSyntax::mif), HasSubstr("at most 4 bits"));
-  EXPECT_THAT(error("12 x4", PatternSyntax::mem), HasSubstr("found 'x4'"));
-  EXPECT_THAT(error("@10 12", PatternSyntax::mem), HasSubstr("found an address"));
-  EXPECT_THAT(error("", PatternSyntax::mem), HasSubstr("found no word"));
-}
-
-TEST(PatternParser, ReadsOrRejectsDamagedFiles) {
-  for (const Language& language : languages) {
-    const FileBytes whole =
-        read_binary_file(TOFSMITH_SOURCE_DIR "/tests/io/golden/" + language.file);
-    EXPECT_GT(expect_damage_read_or_refused(
-                  whole, 200, 6,
-                  [&](std::span<const std::byte> bytes) {
-                    parse_pattern({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                                  language.syntax, "f");
-                  }),
-              10)
-        << language.file;
-  }
 }
 
 }  // namespace

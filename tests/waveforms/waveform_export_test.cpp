@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "camera/shared/actual_code.hpp"
-#include "pattern_reader.hpp"
+#include "refusal.hpp"
 #include "tofsmith/io/number_table.hpp"
 #include "waveform_readers.hpp"
 #include "waveforms/keysight.hpp"
@@ -28,12 +28,9 @@ std::string_view text_of(const ExportedFile& file) {
 }
 
 std::string problem_of(const CodeSet& code, const Camera& camera, const ExportOptions& options) {
-  try {
+  return refusal_of([&] {
     export_files(export_waveforms(code, exporting_camera(code, camera, options), options));
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 std::vector<double> values_read_back(const ExportedFile& file, const QuantizedWaveform& w,
@@ -42,20 +39,19 @@ std::vector<double> values_read_back(const ExportedFile& file, const QuantizedWa
   std::vector<double> values;
   const auto add = [&](double share) { values.push_back(share * w.full_scale); };
   if (format == "siglent-csv") {
-    const EasyWaveTable table = parse_easywave_csv(text_of(file), file.name);
+    const EasyWaveTable table = parse_easywave_csv(text_of(file));
     for (const double v : table.volts) add((v - w.low_v) / (w.high_v - w.low_v));
   } else if (format == "siglent-wvdt14" || format == "siglent-wvdt16") {
     const auto points = format == "siglent-wvdt16" ? WvdtPoints::bits16_little_endian
                                                    : WvdtPoints::bits14_little_endian;
-    for (const int p : parse_wvdt(file.bytes, points, file.name).points)
+    for (const int p : parse_wvdt(file.bytes, points).points)
       add(static_cast<double>(p + w.levels / 2) / (w.levels - 1));
   } else if (format == "keysight-arb") {
-    for (const int p : parse_keysight_arb(text_of(file), file.name).points)
-      add((p + 32767) / 65534.0);
+    for (const int p : parse_keysight_arb(text_of(file)).points) add((p + 32767) / 65534.0);
   } else if (format == "tek-tfw") {
-    for (const int p : parse_tektronix_tfw(file.bytes, file.name)) add(p / 16382.0);
+    for (const int p : parse_tektronix_tfw(file.bytes)) add(p / 16382.0);
   } else {
-    for (const float v : parse_tektronix_wfm(file.bytes, file.name).values) add(0.5 * (v + 1.0));
+    for (const float v : parse_tektronix_wfm(file.bytes).values) add(0.5 * (v + 1.0));
   }
   return values;
 }
@@ -116,7 +112,7 @@ TEST(WaveformExport, WordsAndColumnsContainAllWaveforms) {
       EXPECT_NEAR((table.values.middleCols(2, 5) - code.modulation_samples()).cwiseAbs().maxCoeff(),
                   0.0, 15 * 0.5 / 16383);
     } else if (format.name == "verilog-mem") {
-      const auto words = parse_pattern(text_of(files[0]), PatternSyntax::mem, "f").words;
+      const auto words = parse_pattern(text_of(files[0]), {"", ""}).words;
       ASSERT_EQ(words.size(), 5u * 240);
       const Eigen::MatrixXd light = code.modulation_samples(), sensor = code.demodulation_samples();
       for (int e = 0; e < 5; ++e)

@@ -10,7 +10,6 @@ import base64
 import json
 import sys
 import tempfile
-import unittest
 import zlib
 from pathlib import Path
 
