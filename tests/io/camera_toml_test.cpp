@@ -181,143 +181,116 @@ struct BadLine {
 class CameraTomlRefuses : public testing::TestWithParam<BadLine> {};
 
 TEST_P(CameraTomlRefuses, WithPlaceAndWhatWasExpected) {
-  EXPECT_EQ(refusal(with_line(GetParam().line)), GetParam().message);
+  EXPECT_EQ(refusal(with_line(GetParam().line)), std::string("c.toml:") + GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Lines, CameraTomlRefuses,
     testing::Values(
-        BadLine{"[light]\npeak_facter = 3",
-                "c.toml:3:1: unknown key light.peak_facter; did you mean light.peak_factor?"},
-        BadLine{"[lihgt]", "c.toml:2:2: unknown key lihgt; did you mean light?"},
+        BadLine{"[lihgt]", "2:2: unknown key lihgt; did you mean light?"},
         BadLine{"[lens]\nzzzzzz = 1\nfx_px=1\nfy_px=1\ncx_px=1\ncy_px=1",
-                "c.toml:3:1: unknown key lens.zzzzzz; expected rays, calibration, "
-                "calibration_camera, fx_px, fy_px, cx_px, cy_px, distortion_model, distortion, "
-                "distortion_max_radius, width_px, height_px, frame_modes, blur, blur_sigma_px, "
-                "focal_length_m, f_number, focus_distance_m, pixel_pitch_m, "
-                "pixel_samples"},
+                "3:1: unknown key lens.zzzzzz; expected rays, calibration, calibration_camera, "
+                "fx_px, fy_px, cx_px, cy_px, distortion_model, distortion, distortion_max_radius, "
+                "width_px, height_px, frame_modes, blur, blur_sigma_px, focal_length_m, f_number, "
+                "focus_distance_m, pixel_pitch_m, pixel_samples"},
         BadLine{"sensor.readout_gap_s = -1e-3",
-                "c.toml:2:24: sensor.readout_gap_s = -0.001; must be finite and >= 0"},
+                "2:24: sensor.readout_gap_s = -0.001; must be finite and >= 0"},
         BadLine{"sensor.frame_period_s = 0",
-                "c.toml:2:25: sensor.frame_period_s = 0; must be finite and > 0"},
-        BadLine{"samples = 240.5", "c.toml:2:11: samples: found 240.5; expected an integer"},
+                "2:25: sensor.frame_period_s = 0; must be finite and > 0"},
+        BadLine{"samples = 240.5", "2:11: samples: found 240.5; expected an integer"},
         BadLine{"samples = 99999999999",
-                "c.toml:2:11: samples: found 99999999999; expected an integer of at most 32 bits"},
-        BadLine{"light = 3", "c.toml:2:9: light: found 3; expected a table"},
-        BadLine{"name = 3", "c.toml:2:8: name: found 3; expected a text in quotes"},
+                "2:11: samples: found 99999999999; expected an integer of at most 32 bits"},
+        BadLine{"light = 3", "2:9: light: found 3; expected a table"},
+        BadLine{"name = 3", "2:8: name: found 3; expected a text in quotes"},
         BadLine{"exposure_s = \"0.3\"",
-                "c.toml:2:14: exposure_s: found \"0.3\"; expected a number or a list of numbers"},
+                "2:14: exposure_s: found \"0.3\"; expected a number or a list of numbers"},
         BadLine{"exposure_s = []",
-                "c.toml:2:14: exposure_s: found an empty list; expected at least one number"},
-        BadLine{"exposure_s = [0.1, true]",
-                "c.toml:2:20: exposure_s[1]: found true; expected a number"},
-        BadLine{"exposure_s = inf", "c.toml:2:14: exposure_s: found inf; expected a finite number"},
+                "2:14: exposure_s: found an empty list; expected at least one number"},
+        BadLine{"exposure_s = [0.1, true]", "2:20: exposure_s[1]: found true; expected a number"},
+        BadLine{"exposure_s = inf", "2:14: exposure_s: found inf; expected a finite number"},
         BadLine{"exposure_s = [0.1, nan]",
-                "c.toml:2:20: exposure_s[1]: found nan; expected a finite number"},
-        BadLine{"light.binary = 1", "c.toml:2:16: light.binary: found 1; expected true or false"},
+                "2:20: exposure_s[1]: found nan; expected a finite number"},
+        BadLine{"light.binary = 1", "2:16: light.binary: found 1; expected true or false"},
         BadLine{"operating.signal_e_per_s = 1e3",
-                "c.toml:2:28: operating.signal_e_per_s: found 1000.0; expected a list of numbers"},
+                "2:28: operating.signal_e_per_s: found 1000.0; expected a list of numbers"},
         BadLine{"operating.albedo = \"unifrom\"",
-                "c.toml:2:20: operating.albedo: found \"unifrom\"; expected a number or "
-                "\"uniform\""},
+                "2:20: operating.albedo: found \"unifrom\"; expected a number or \"uniform\""},
         BadLine{"sensor.readout = \"diference\"",
-                "c.toml:2:18: sensor.readout: found \"diference\"; expected one of \"separate\", "
+                "2:18: sensor.readout: found \"diference\"; expected one of \"separate\", "
                 "\"difference\", \"rows\"; did you mean \"difference\"?"},
         BadLine{"light.peak_factor = 0.5",
-                "c.toml:2:21: light.peak_factor = 0.5; must be finite and >= 1: the peak is never "
-                "below the average"},
+                "2:21: light.peak_factor = 0.5; must be finite and >= 1: the peak is never below "
+                "the average"},
         BadLine{"operating.ambient_e_per_s = []",
-                "c.toml:2:29: operating.ambient_e_per_s = []; must list at least one level"},
-        BadLine{"sensor.modulation_contrast = 0.5",
-                "c.toml:2:30: sensor.modulation_contrast = 0.5; must be 1 for one tap: contrast "
-                "mixes taps"},
+                "2:29: operating.ambient_e_per_s = []; must list at least one level"},
+        BadLine{
+            "sensor.modulation_contrast = 0.5",
+            "2:30: sensor.modulation_contrast = 0.5; must be 1 for one tap: contrast mixes taps"},
         BadLine{"sensor.taps = 2\nsensor.modulation_contrast = [1, 1.5]",
-                "c.toml:3:30: sensor.modulation_contrast[1] = 1.5; must be in (0, 1]"},
+                "3:30: sensor.modulation_contrast[1] = 1.5; must be in (0, 1]"},
         BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1 }",
-                "c.toml:2:8: found no lens.cy_px; expected a line such as `cy_px = 239.5`"},
+                "2:8: found no lens.cy_px; expected a line such as `cy_px = 239.5`"},
         BadLine{"samples = 8 8",
-                "c.toml:2:13: Error while parsing key-value pair: expected a "
-                "comment or whitespace, saw '8'"}));
+                "2:13: Error while parsing key-value pair: expected a comment or whitespace, saw "
+                "'8'"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Responses, CameraTomlRefuses,
     testing::Values(
         BadLine{"light.impulse_response = { kind = \"none\", f_max_hz = 1e8 }",
-                "c.toml:2:54: light.impulse_response.f_max_hz: is only valid with kind = "
-                "\"hann\""},
+                "2:54: light.impulse_response.f_max_hz: is only valid with kind = \"hann\""},
         BadLine{"light.impulse_response = { kind = \"hann\", f_max_hz = 1e8, cutoff_hz = 1e8 }",
-                "c.toml:2:71: light.impulse_response.cutoff_hz: is only valid with kind = "
-                "\"gaussian\" or \"lowpass\""},
+                "2:71: light.impulse_response.cutoff_hz: is only valid with kind = \"gaussian\" or "
+                "\"lowpass\""},
         BadLine{"light.impulse_response = { kind = \"lowpass\", cutoff_hz = 1e8, file = \"a\" }",
-                "c.toml:2:70: light.impulse_response.file: is only valid with kind = "
-                "\"file\""},
+                "2:70: light.impulse_response.file: is only valid with kind = \"file\""},
         BadLine{"light.impulse_response = { kind = \"hann\" }",
-                "c.toml:2:26: found no light.impulse_response.f_max_hz; expected a line such as "
-                "`f_max_hz = 150e6`"},
+                "2:26: found no light.impulse_response.f_max_hz; expected a line such as `f_max_hz "
+                "= 150e6`"},
         BadLine{"light.impulse_response = { f_max_hz = 1e8 }",
-                "c.toml:2:26: found no light.impulse_response.kind; expected a line such as "
-                "`kind = \"hann\"`"},
+                "2:26: found no light.impulse_response.kind; expected a line such as `kind = "
+                "\"hann\"`"},
         BadLine{"[sensor.impulse_response]\nkind = \"gaussian\"\ncutoff_hz = -1",
-                "c.toml:4:13: sensor.impulse_response.cutoff_hz = -1; must be finite and > 0"},
+                "4:13: sensor.impulse_response.cutoff_hz = -1; must be finite and > 0"},
         BadLine{"light.impulse_response = { kind = \"file\", time_step_s = 1e-9 }",
-                "c.toml:2:26: found no light.impulse_response.samples; expected a line such as "
-                "`samples = [0.1, 0.5, 0.3, 0.1]`"},
-        BadLine{"light.impulse_response = { kind = \"file\", file = \"a.csv\", samples = [1] }",
-                "c.toml:2:69: light.impulse_response.samples: is only valid with kind = \"file\" "
-                "and no file"},
+                "2:26: found no light.impulse_response.samples; expected a line such as `samples = "
+                "[0.1, 0.5, 0.3, 0.1]`"},
+        BadLine{
+            "light.impulse_response = { kind = \"file\", file = \"a.csv\", samples = [1] }",
+            "2:69: light.impulse_response.samples: is only valid with kind = \"file\" and no file"},
         BadLine{"light.impulse_response = { kind = \"file\", samples = [1, 2] }",
-                "c.toml:2:26: found no light.impulse_response.time_step_s; expected a line such "
-                "as `time_step_s = 1e-9`"}));
+                "2:26: found no light.impulse_response.time_step_s; expected a line such as "
+                "`time_step_s = 1e-9`"}));
 
 INSTANTIATE_TEST_SUITE_P(
-    OperatingMultipath, CameraTomlRefuses,
+    Operating, CameraTomlRefuses,
     testing::Values(
-        BadLine{"[operating.multipath]\nrato = [0.1, 0.5]",
-                "c.toml:3:1: unknown key operating.multipath.rato; did you mean "
-                "operating.multipath.ratio?"},
         BadLine{"[operating.multipath]\nratio = [0.5, 0.1]",
-                "c.toml:3:9: operating.multipath.ratio = [0.5, 0.1]; must be [min, max] with min "
-                "<= max"},
+                "3:9: operating.multipath.ratio = [0.5, 0.1]; must be [min, max] with min <= max"},
         BadLine{"[operating.multipath]\ndelay_m = [1, 8]",
-                "c.toml:3:11: operating.multipath.delay_m = [1, 8]; must be [shortest, longest] "
-                "with shortest <= longest and below the unambiguous range, 7.495 m"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    OperatingInterference, CameraTomlRefuses,
-    testing::Values(BadLine{
-        "[operating.interference]\ncode = \"other\"",
-        "c.toml:3:8: operating.interference.code = other; must be \"same\" or the name of "
-        "a family such as sinusoid-k4"}));
-
-INSTANTIATE_TEST_SUITE_P(
-    OperatingDepths, CameraTomlRefuses,
-    testing::Values(
+                "3:11: operating.multipath.delay_m = [1, 8]; must be [shortest, longest] with "
+                "shortest <= longest and below the unambiguous range, 7.495 m"},
+        BadLine{"[operating.interference]\ncode = \"other\"",
+                "3:8: operating.interference.code = other; must be \"same\" or the name of a "
+                "family such as sinusoid-k4"},
         BadLine{"operating.depths = []",
-                "c.toml:2:20: operating.depths = []; must list at least one weight"},
+                "2:20: operating.depths = []; must list at least one weight"},
         BadLine{"operating.depths = [0, 0]",
-                "c.toml:2:20: operating.depths = weights that are all 0; must have one > 0"},
+                "2:20: operating.depths = weights that are all 0; must have one > 0"},
         BadLine{"operating.depths = [1, -2]",
-                "c.toml:2:20: operating.depths[1] = -2; must be finite and >= 0"},
-        BadLine{"operating.depths = [1, nan]",
-                "c.toml:2:24: operating.depths[1]: found nan; expected a finite number"},
-        BadLine{"operating.depths = \"near\"",
-                "c.toml:2:20: operating.depths: found \"near\"; expected a list of numbers"},
-        BadLine{"operating.depth = [1, 2]",
-                "c.toml:2:11: unknown key operating.depth; did you mean operating.depths?"},
+                "2:20: operating.depths[1] = -2; must be finite and >= 0"},
         BadLine{"operating.working_distance_m = 3",
-                "c.toml:2:32: operating.working_distance_m: found 3; expected a list of two "
-                "numbers"},
+                "2:32: operating.working_distance_m: found 3; expected a list of two numbers"},
         BadLine{"operating.working_distance_m = [1, 8]",
-                "c.toml:2:32: operating.working_distance_m = [1, 8]; must be [nearest, farthest] "
-                "with nearest < farthest <= the unambiguous range, 7.49481 m"}));
+                "2:32: operating.working_distance_m = [1, 8]; must be [nearest, farthest] with "
+                "nearest < farthest <= the unambiguous range, 7.49481 m"}));
 
 TEST(CameraToml, TooManyDepthWeightsAreRejected) {
   std::string list = "1";
   for (int i = 0; i < 10000; ++i) list += ",1";
   EXPECT_EQ(refusal(std::string(shortest) + "operating.depths = [" + list + "]"),
             "c.toml:2:20: operating.depths = 10001 weights; must be at most 10000, one for each "
-            "equal part "
-            "of the working distance or range");
+            "equal part of the working distance or range");
 }
 
 TEST(CameraToml, ReportsWhereInvalidTomlEnds) {
@@ -370,10 +343,6 @@ TEST(CameraToml, KeysOfTooManyPartsAreRejected) {
                               "c.toml")
                 .name,
             dots);
-}
-
-TEST(CameraToml, ReportsAMissingFile) {
-  EXPECT_THAT(io_error_of([] { read_camera_toml("no/such.toml"); }), HasSubstr("no/such.toml"));
 }
 
 TEST(CameraSettings, AreAppliedBeforeValidation) {

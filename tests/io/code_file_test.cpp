@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <locale>
 #include <nlohmann/json.hpp>
 
 #include "damaged_files.hpp"
@@ -111,9 +109,6 @@ TEST(LoadCode, SuggestsSimilarNames) {
       io_error_of([&] { load_code("my/own.code.json", camera); }),
       "my/own.code.json: there is no such file and no built-in family of that name; `tofsmith "
       "codes` lists them");
-  EXPECT_EQ(io_error_of([&] { load_code("hamiltonan-k3", camera); }),
-            "hamiltonan-k3: there is no such file and no built-in family of that name; did you "
-            "mean hamiltonian-k3?");
 }
 
 TEST(TapOrder, HasTwoValidNames) {
@@ -122,20 +117,8 @@ TEST(TapOrder, HasTwoValidNames) {
   EXPECT_THROW(parse_tap_order("both"), std::invalid_argument);
 }
 
-TEST(CorrelationFile, IsReadFromEveryFormat) {
+TEST(CorrelationFile, AListIsOneFunction) {
   const TemporaryDirectory directory;
-  Eigen::MatrixXd functions = Eigen::MatrixXd::NullaryExpr(
-      8, 2, [](Eigen::Index n, Eigen::Index i) { return static_cast<double>(n * 2 + i) / 16; });
-  std::ofstream csv(directory / "f.csv");
-  csv.imbue(std::locale::classic());
-  csv << "chi_0,chi_1\n";
-  for (Eigen::Index n = 0; n < 8; ++n) csv << functions(n, 0) << "," << functions(n, 1) << "\n";
-  csv.close();
-  write_npy(directory / "f.npy", array_of(functions), OutputPolicy::refuse_existing);
-  write_npz(directory / "f.npz", {{"corrfs", array_of(functions)}}, OutputPolicy::refuse_existing);
-  for (const char* name : {"f.csv", "f.npy", "f.npz"})
-    EXPECT_EQ(read_correlation_functions(directory / name), functions) << name;
-
   const std::vector<float> column(10, 0.5f);
   write_npy(directory / "one.npy", NpyArray::of<float>({10}, column),
             OutputPolicy::refuse_existing);
@@ -165,31 +148,6 @@ TEST(CorrelationFile, RejectsInvalidCorrelationFunctions) {
               HasSubstr("there is no array 'corrfs'; found chi"));
   EXPECT_THAT(io_error_of([&] { read_correlation_functions("a.exr"); }),
               HasSubstr("expected one of .csv, .txt, .tsv, .dat, .npy, .npz"));
-}
-
-TEST(PublishedCodes, AllLoadAndCorrelateLikeTheirFiles) {
-  const std::filesystem::path directory =
-      std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data/itof_codes";
-  if (!std::filesystem::exists(directory)) GTEST_SKIP() << "no published codes beside the source";
-  int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
-    if (entry.path().extension() != ".npz") continue;
-    SCOPED_TRACE(entry.path().filename());
-    ++files;
-    const bool complementary = entry.path().string().find("complementary") != std::string::npos;
-    const TapLayout layout = {complementary ? 2 : 1, TapOrder::blocked};
-    const CodeSet code = read_code(entry.path(), layout);
-    for (int e = 0; e < code.exposures(); ++e) EXPECT_TRUE(code.modulation(e).is_binary());
-    const NpzArrays ours =
-        parse_npz(serialize_code_npz(code, TapOrder::blocked), entry.path().string());
-    const NpzArrays theirs = read_npz(entry.path());
-    for (const char* name : {"modfs", "demodfs", "corrfs"})
-      EXPECT_LT(
-          (matrix_of(ours.at(name), name) - matrix_of(theirs.at(name), name)).cwiseAbs().maxCoeff(),
-          1e-9)
-          << name;
-  }
-  EXPECT_GT(files, 0);
 }
 
 using nlohmann::json;
@@ -275,12 +233,6 @@ TEST(CodeJson, ProvenanceIsOptional) {
   EXPECT_TRUE(code.provenance.residuals.empty());
 }
 
-TEST(CodeJson, ReportsLineAndColumnWhereJsonEnds) {
-  EXPECT_THAT(io_error_of([] { parse_code_json("{\n  \"format\": ,\n}", "c.json"); }),
-              HasSubstr("c.json:2:13: "));
-  EXPECT_THAT(io_error_of([] { parse_code_json("", "c.json"); }), HasSubstr("c.json:1:1: "));
-}
-
 struct BadMember {
   const char* pointer;
   json value;
@@ -290,79 +242,71 @@ struct BadMember {
 class CodeJsonRefuses : public testing::TestWithParam<BadMember> {};
 
 TEST_P(CodeJsonRefuses, WithPointerAndWhatWasExpected) {
-  EXPECT_EQ(refusal(changed(GetParam().pointer, GetParam().value)), GetParam().message);
+  EXPECT_EQ(refusal(changed(GetParam().pointer, GetParam().value)),
+            std::string("c.json: ") + GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Members, CodeJsonRefuses,
     testing::Values(
-        BadMember{"/format", "other",
-                  "c.json: /format: found \"other\"; expected \"tofsmith-code\""},
-        BadMember{"/version", 2,
-                  "c.json: /version: found 2; expected 1: a newer tofsmith wrote this file"},
-        BadMember{"/samlpes", 4, "c.json: unknown member \"samlpes\"; did you mean \"samples\"?"},
-        BadMember{"/name", 3, "c.json: /name: found 3; expected a text"},
-        BadMember{"/samples", 4.0,
-                  "c.json: /samples: found 4.0; expected an integer in [2, 65536]"},
-        BadMember{"/samples", 1e9,
-                  "c.json: /samples: found 1000000000.0; expected an integer in [2, 65536]"},
+        BadMember{"/format", "other", "/format: found \"other\"; expected \"tofsmith-code\""},
+        BadMember{"/version", 2, "/version: found 2; expected 1: a newer tofsmith wrote this file"},
+        BadMember{"/samlpes", 4, "unknown member \"samlpes\"; did you mean \"samples\"?"},
+        BadMember{"/name", 3, "/name: found 3; expected a text"},
+        BadMember{"/samples", 4.0, "/samples: found 4.0; expected an integer in [2, 65536]"},
         BadMember{"/samples", 18446744073709551615ull,
-                  "c.json: /samples: found 18446744073709551615; expected an integer in [2, "
-                  "65536]"},
-        BadMember{"/taps", 0, "c.json: /taps: found 0; expected an integer in [1, 32]"},
-        BadMember{"/taps", 3,
-                  "c.json: /demodulation: found a list of 4; expected a list of 6: /exposures x "
-                  "/taps functions"},
-        BadMember{"/exposures", 3,
-                  "c.json: /modulation: found a list of 2; expected a list of 3: as specified by "
-                  "/exposures"},
+                  "/samples: found 18446744073709551615; expected an integer in [2, 65536]"},
+        BadMember{"/taps", 0, "/taps: found 0; expected an integer in [1, 32]"},
+        BadMember{
+            "/taps", 3,
+            "/demodulation: found a list of 4; expected a list of 6: /exposures x /taps functions"},
+        BadMember{
+            "/exposures", 3,
+            "/modulation: found a list of 2; expected a list of 3: as specified by /exposures"},
         BadMember{"/modulation", "none",
-                  "c.json: /modulation: found \"none\"; expected a list of 2: as specified by "
-                  "/exposures"},
-        BadMember{"/modulation/0", 3, "c.json: /modulation/0: found 3; expected an object"},
+                  "/modulation: found \"none\"; expected a list of 2: as specified by /exposures"},
+        BadMember{"/modulation/0", 3, "/modulation/0: found 3; expected an object"},
         BadMember{"/modulation/0/kind", "square",
-                  "c.json: /modulation/0/kind: found \"square\"; expected \"binary\", "
-                  "\"sampled\" or \"cosines\""},
+                  "/modulation/0/kind: found \"square\"; expected \"binary\", \"sampled\" or "
+                  "\"cosines\""},
         BadMember{"/modulation/0/levle", 1,
-                  "c.json: /modulation/0: unknown member \"levle\"; did you mean \"level\"?"},
-        BadMember{"/modulation/0/level", 0,
-                  "c.json: /modulation/0/level: found 0; expected a number > 0"},
+                  "/modulation/0: unknown member \"levle\"; did you mean \"level\"?"},
+        BadMember{"/modulation/0/level", 0, "/modulation/0/level: found 0; expected a number > 0"},
         BadMember{"/modulation/0/level", 3,
-                  "c.json: /modulation/0: modulation 0 mean = 1.16667; must be <= 1: modulation is "
-                  "power over average power"},
+                  "/modulation/0: modulation 0 mean = 1.16667; must be <= 1: modulation is power "
+                  "over average power"},
         BadMember{"/modulation/0/on/1",
                   {0.25, 0.4},
-                  "c.json: /modulation/0/on: on interval 0 = [0.1111111111111111, 0.3); switching "
-                  "times must be sorted: the next rise is at 0.25"},
+                  "/modulation/0/on: on interval 0 = [0.1111111111111111, 0.3); switching times "
+                  "must be sorted: the next rise is at 0.25"},
         BadMember{"/modulation/0/on/1",
                   {0.9, 0.9},
-                  "c.json: /modulation/0/on: on interval 1 = [0.9, 0.9); must satisfy 0 <= rise < "
-                  "1 and rise < fall <= rise + 1"},
+                  "/modulation/0/on: on interval 1 = [0.9, 0.9); must satisfy 0 <= rise < 1 and "
+                  "rise < fall <= rise + 1"},
         BadMember{"/modulation/0/on/1/0", nullptr,
-                  "c.json: /modulation/0/on/1/0: found null; expected a number"},
+                  "/modulation/0/on/1/0: found null; expected a number"},
         BadMember{"/modulation/0/on/1",
                   {0.9},
-                  "c.json: /modulation/0/on/1: found a list of 1; expected a list of 2: [rise, "
-                  "fall]"},
+                  "/modulation/0/on/1: found a list of 1; expected a list of 2: [rise, fall]"},
         BadMember{"/modulation/1/values/2", -0.5,
-                  "c.json: /modulation/1/values/2: found -0.5; expected a number >= 0"},
+                  "/modulation/1/values/2: found -0.5; expected a number >= 0"},
         BadMember{"/modulation/1/values",
                   {1, 1, 1},
-                  "c.json: /modulation/1/values: found a list of 3; expected a list of 4: as "
-                  "specified by /samples"},
+                  "/modulation/1/values: found a list of 3; expected a list of 4: as specified by "
+                  "/samples"},
         BadMember{"/demodulation/0/level", 1.5,
-                  "c.json: /demodulation/0/level: found 1.5; expected a number in [0, 1]"},
+                  "/demodulation/0/level: found 1.5; expected a number in [0, 1]"},
         BadMember{"/demodulation/2/values/3", 1.5,
-                  "c.json: /demodulation/2/values/3: found 1.5; expected a number in [0, 1]"},
+                  "/demodulation/2/values/3: found 1.5; expected a number in [0, 1]"},
         BadMember{"/demodulation/3/values/2", 0.75,
-                  "c.json: sum over taps of exposure 1 = 1.25; must be <= 1: each electron is "
-                  "collected by one tap"},
+                  "sum over taps of exposure 1 = 1.25; must be <= 1: each electron is collected by "
+                  "one tap"},
         BadMember{"/provenance/sede", 3,
-                  "c.json: /provenance: unknown member \"sede\"; did you mean \"seed\"?"},
+                  "/provenance: unknown member \"sede\"; did you mean \"seed\"?"},
         BadMember{"/provenance/seed", -1,
-                  "c.json: /provenance/seed: found -1; expected an integer in [0, 2^64)"},
+                  "/provenance/seed: found -1; expected an integer in [0, 2^64)"},
         BadMember{"/provenance/residuals/1", "x",
-                  "c.json: /provenance/residuals/1: found \"x\"; expected a number"}));
+                  "/provenance/residuals/1: found \"x\"; expected a number"}));
 
 TEST(CodeJson, RejectsMissingMembers) {
   EXPECT_EQ(refusal(without("", "samples")), "c.json: found no member \"samples\"; expected one");
@@ -370,17 +314,6 @@ TEST(CodeJson, RejectsMissingMembers) {
   EXPECT_EQ(refusal(without("/demodulation/2", "values")),
             "c.json: /demodulation/2: found no member \"values\"; expected one");
   EXPECT_EQ(refusal(json(3)), "c.json: found 3; expected an object");
-}
-
-TEST(CodeJson, RejectsInvalidNumbers) {
-  std::string text = code_to_json(awkward_code());
-  for (const char* number : {"NaN", "Infinity", "1e999"}) {
-    std::string broken = text;
-    const std::string level = "\"level\": 2.0";
-    ASSERT_NE(broken.find(level), std::string::npos);
-    broken.replace(broken.find(level), level.size(), std::string("\"level\": ") + number);
-    EXPECT_THAT(io_error_of([&] { parse_code_json(broken, "c.json"); }), HasSubstr("c.json"));
-  }
 }
 
 TEST(CodeJson, RejectsWritingInvalidCodes) {

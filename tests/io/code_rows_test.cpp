@@ -33,12 +33,7 @@ struct Pair {
     write_npy(rows, array_of(rows_values), OutputPolicy::overwrite);
   }
   std::string refusal() const {
-    try {
-      read_rows(light, rows);
-      return "";
-    } catch (const IoError& error) {
-      return error.what();
-    }
+    return io_error_of([&] { read_rows(light, rows); });
   }
 
   TemporaryDirectory directory;
@@ -150,20 +145,8 @@ TEST(SignedCodes, AreReadBackFromEveryFormat) {
   }
 }
 
-TEST(SignedCodes, StoreTheirWeights) {
-  const std::string json = code_to_json(analog_code());
-  EXPECT_THAT(json, HasSubstr("\"signed\": true"));
-  EXPECT_THAT(json, HasSubstr("-0.99"));
-  EXPECT_EQ(code_to_json(parse_code_json(json, "a.code.json")), json);
-}
-
 std::string refusal(const std::string& json) {
-  try {
-    parse_code_json(json, "a.code.json");
-  } catch (const IoError& error) {
-    return error.what();
-  }
-  return "";
+  return io_error_of([&] { parse_code_json(json, "a.code.json"); });
 }
 
 TEST(SignedCodes, RejectInvalidWeights) {
@@ -174,7 +157,6 @@ TEST(SignedCodes, RejectInvalidWeights) {
     EXPECT_NE(at, std::string::npos) << before;
     return changed.replace(at, before.size(), after);
   };
-  EXPECT_EQ(refusal(json), "");
   EXPECT_THAT(refusal(with("\"signed\": true", "\"signed\": true, \"rows\": true")),
               HasSubstr("is not valid for rows, whose weights are always signed"));
   EXPECT_THAT(refusal(with("\"taps\": 1", "\"taps\": 2")), HasSubstr("1 for a mixer"));
@@ -223,8 +205,6 @@ TEST(CodeNpz, BinaryCodesOnTheGridAreReadBack) {
       EXPECT_TRUE(back.modulation(i).is_binary());
     }
     expect_same_samples(back, code);
-    EXPECT_EQ(serialize_code_npz(back),
-              serialize_code_npz(parse_code_npz(serialize_code_npz(back), "again.npz")));
   }
 }
 
@@ -339,15 +319,6 @@ TEST(CodeNpz, RejectsInconsistentArrays) {
   EXPECT_EQ(refusal(serialize_npz({{"curves", array_of(hamiltonian().modulation_samples())}})),
             "a.npz: found the arrays curves; expected modfs and demodfs, a code, or corrfs, a "
             "measured table");
-}
-
-TEST(CodeNpz, RefusesEveryTruncation) {
-  const CodeSet code = make_family("hamiltonian-k3", {.samples = 12}).with_two_buckets();
-  const FileBytes bytes = serialize_code_npz(code, TapOrder::blocked);
-  const auto parse = [](std::span<const std::byte> part) {
-    parse_code_npz(part, "a.npz", blocked);
-  };
-  expect_truncations_refused(bytes, parse);
 }
 
 }  // namespace

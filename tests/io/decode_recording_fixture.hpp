@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "temporary_directory.hpp"
@@ -16,21 +19,40 @@
 
 namespace tofsmith {
 
-/// Three frames of 6 x 5 pixels with different measurements.
+inline std::unique_ptr<FrameBackend> backend_of(const Camera& camera,
+                                                const char* code = "hamiltonian-k4") {
+  return cpu_backend(make_decoder(DecodeMethod::zncc, load_decoding_table(code, camera).table));
+}
+
+/// Returns a stream of `bytes` that counts the bytes read in `at`.
+inline ReadStream stream_of(std::span<const std::byte> bytes, std::size_t& at) {
+  return [bytes, &at](std::span<std::byte> into) {
+    const std::size_t count = std::min(into.size(), bytes.size() - at);
+    std::ranges::copy(bytes.subspan(at, count), into.begin());
+    at += count;
+    return count;
+  };
+}
+
+/// Frames of 6 x 5 pixels with different measurements.
 class DecodeRecording : public testing::Test {
  protected:
-  DecodeRecording() {
-    raw_.frames = 3;
-    raw_.height = 6;
-    raw_.width = 5;
-    raw_.measurements = 4;
-    for (int i = 0; i < 3 * 6 * 5 * 4; ++i)
+  explicit DecodeRecording(int frames = 3) {
+    raw_ = {.frames = frames, .height = 6, .width = 5, .measurements = 4, .values = {}};
+    for (int i = 0; i < frames * 6 * 5 * 4; ++i)
       raw_.values.push_back(1000.0F + static_cast<float>(i * 37 % 101));
     write_raw_frames(path("raw.npy"), raw_, OutputPolicy::refuse_existing);
   }
   std::filesystem::path path(const char* name) const { return directory_.path() / name; }
   DecodeRequest request(const char* output) const {
     return {.raw = {path("raw.npy")}, .output = path(output)};
+  }
+  /// One file per plane.
+  DecodeRequest stack(const char* output, const std::vector<DecodedPlane>& planes) const {
+    DecodeRequest request = this->request(output);
+    request.stack = true;
+    request.outputs = planes;
+    return request;
   }
   std::vector<float> plane(const char* name, std::size_t frame) const {
     const NpyArray array = read_npy(path(name));
@@ -41,8 +63,7 @@ class DecodeRecording : public testing::Test {
   TemporaryDirectory directory_;
   RawFrames raw_;
   Camera camera_ = built_in_camera("paper-10f0");
-  std::unique_ptr<FrameBackend> backend_ = cpu_backend(
-      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
+  std::unique_ptr<FrameBackend> backend_ = backend_of(camera_);
 };
 
 }  // namespace tofsmith

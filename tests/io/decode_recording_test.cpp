@@ -27,6 +27,8 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
+const std::vector depth_and_averaged = {DecodedPlane::depth, DecodedPlane::averaged};
+
 TEST_F(DecodeRecording, EqualsTheDecoder) {
   const DecodedRecording result = decode_recording(request("d.npy"), *backend_);
   ASSERT_EQ(result.files.size(), 3u);
@@ -43,23 +45,28 @@ TEST_F(DecodeRecording, EqualsTheDecoder) {
   }
 }
 
-TEST_F(DecodeRecording, ReportsTheFinishedFramesWhenStopped) {
-  DecodedRecording result;
-  const Progress progress = [](double fraction, std::string_view) { return fraction < 0.5; };
-  EXPECT_THROW(decode_recording(request("d.npy"), *backend_, progress, result), Interrupted);
-  EXPECT_EQ(result.frame_count, 3);
-  EXPECT_EQ(result.frames.size(), 1u);
-  ASSERT_EQ(result.files.size(), 1u);
-  EXPECT_TRUE(std::filesystem::exists(result.files.front()));
+TEST_F(DecodeRecording, KeepsAndReportsTheFinishedFilesWhenStopped) {
+  for (const bool stack : {false, true}) {
+    DecodeRequest asked = request("d.npy");
+    asked.stack = stack;
+    const int before = directory_.files();
+    DecodedRecording result;
+    const Progress progress = [](double fraction, std::string_view) { return fraction < 0.5; };
+    EXPECT_THROW(decode_recording(asked, *backend_, progress, result), Interrupted);
+    EXPECT_EQ(result.frame_count, 3);
+    EXPECT_EQ(result.frames.size(), 1u);
+    EXPECT_EQ(result.files.size(), stack ? 0u : 1u);
+    EXPECT_EQ(directory_.files() - before, stack ? 0 : 1);
+    for (const std::filesystem::path& file : result.files)
+      EXPECT_TRUE(std::filesystem::exists(file));
+  }
 }
 
 TEST_F(DecodeRecording, FiltersLikeTheFilter) {
   const FilterOptions options = FilterOptions::of(FilterStrength::light);
-  DecodeRequest filtered = request("f.npy");
+  DecodeRequest filtered = stack("f.npy", depth_and_averaged);
   filtered.filter = options;
   filtered.frame = 1;
-  filtered.stack = true;
-  filtered.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
   decode_recording(filtered, *backend_);
   const Decoder& decoder = *backend_->decoder().correlation_decoder();
   const FilteredFrame frame = Filter(decoder.table(), options).apply(raw_, 1);
@@ -69,70 +76,11 @@ TEST_F(DecodeRecording, FiltersLikeTheFilter) {
   EXPECT_EQ(plane("f-averaged.npy", 0), frame.averaged().pixels);
 }
 
-/// Fails with the second frame.
-class FailingPipeline final : public FramePipeline {
- public:
-  explicit FailingPipeline(std::unique_ptr<FramePipeline> works)
-      : FramePipeline(works->decoder(), works->steps(), works->height(), works->width()),
-        works_(std::move(works)) {}
-
-  FrameMemory memory(int recorded) const override { return works_->memory(recorded); }
-  bool submit(const RawView& raw, bool completes_mean) override {
-    return works_->submit(raw, completes_mean);
-  }
-  bool submit_end() override { return works_->submit_end(); }
-  void decode(const DecodedView& decoded, const Progress& progress,
-              const Image<std::uint8_t>& left_out) override {
-    works_->decode(decoded, progress, left_out);
-    if (++frames_ == 2) throw IoError("device", "is lost");
-  }
-  RawView measured() override { return works_->measured(); }
-  RawView numbers(const Progress& progress) override { return works_->numbers(progress); }
-  const Image<float>& deviation_factor() const override { return works_->deviation_factor(); }
-
- private:
-  std::unique_ptr<FramePipeline> works_;
-  int frames_ = 0;
-};
-
-class FailingBackend final : public FrameBackend {
- public:
-  explicit FailingBackend(const FrameBackend& works) : works_(works) {}
-  const DepthDecoder& decoder() const override { return works_.decoder(); }
-  std::string device() const override { return "device"; }
-  std::unique_ptr<FramePipeline> prepare(const FrameSteps& steps, int height,
-                                         int width) const override {
-    return std::make_unique<FailingPipeline>(works_.prepare(steps, height, width));
-  }
-
- private:
-  const FrameBackend& works_;
-};
-
-TEST_F(DecodeRecording, KeepsCompleteFilesIfADeviceFailsHalfWay) {
-  const FailingBackend failing(*backend_);
-  for (const bool stack : {false, true}) {
-    DecodeRequest asked = request("d.npy");
-    asked.stack = stack;
-    const std::filesystem::path folder = asked.output.parent_path();
-    const auto files = [&] {
-      return std::distance(std::filesystem::directory_iterator(folder), {});
-    };
-    const auto before = files();
-    DecodedRecording result;
-    EXPECT_THROW(decode_recording(asked, failing, {}, result), IoError);
-    EXPECT_EQ(files() - before, stack ? 0 : 1);
-    EXPECT_EQ(result.files.size(), stack ? 0u : 1u);
-  }
-}
-
 TEST_F(DecodeRecording, AveragesFramesLikeTheTimeFilter) {
   const TimeFilterOptions options{.max_frames = 5, .max_difference_sigma = 9.0};
-  DecodeRequest added = request("all.npy");
+  DecodeRequest added = stack("all.npy", depth_and_averaged);
   added.time_filter = options;
   added.filter = FilterOptions::of(FilterStrength::light);
-  added.stack = true;
-  added.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
   EXPECT_EQ(decode_recording(added, *backend_).frames.size(), 3u);
   const Decoder& decoder = *backend_->decoder().correlation_decoder();
   TimeFilterOptions before_filter = options;
@@ -154,14 +102,12 @@ TEST_F(DecodeRecording, AveragesFramesLikeTheTimeFilter) {
 TEST_F(DecodeRecording, ASingleFrameIsAveragedWithEarlierFrames) {
   for (const int average : {1, 2}) {
     SCOPED_TRACE(average);
-    DecodeRequest all = request("all.npy"), one = request("one.npy");
-    for (DecodeRequest* added : {&all, &one}) {
-      added->time_filter = TimeFilterOptions{.max_difference_sigma = 20.0};
-      added->average = average;
-      added->stack = true;
-      added->outputs = {DecodedPlane::depth, DecodedPlane::averaged};
-      added->policy = OutputPolicy::overwrite;
-    }
+    DecodeRequest all = stack("all.npy", depth_and_averaged);
+    all.time_filter = TimeFilterOptions{.max_difference_sigma = 20.0};
+    all.average = average;
+    all.policy = OutputPolicy::overwrite;
+    DecodeRequest one = all;
+    one.output = path("one.npy");
     one.frame = 1;
     decode_recording(all, *backend_);
     const DecodedRecording result = decode_recording(one, *backend_);
@@ -176,10 +122,8 @@ TEST_F(DecodeRecording, ASingleFrameIsAveragedWithEarlierFrames) {
 TEST_F(DecodeRecording, ASingleFrameIsAveragedWithItsLookAhead) {
   TimeFilter both_ways(backend_->decoder().table(),
                        {.max_difference_sigma = 20.0, .look_ahead = 1});
-  DecodeRequest all = request("all.npy");
+  DecodeRequest all = stack("all.npy", depth_and_averaged);
   all.time_filter = both_ways.options();
-  all.stack = true;
-  all.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
   EXPECT_EQ(decode_recording(all, *backend_).frames.size(), 3u);
   EXPECT_FALSE(both_ways.add(view_of_frame(raw_, 0)).has_value());
   for (int f = 0; f < 3; ++f) {
@@ -203,11 +147,9 @@ TEST_F(DecodeRecording, ASingleFrameIsAveragedWithItsLookAhead) {
 }
 
 TEST_F(DecodeRecording, LookAheadEndsWithTheLastMean) {
-  DecodeRequest all = request("all.npy");
+  DecodeRequest all = stack("all.npy", {DecodedPlane::averaged});
   all.time_filter = TimeFilterOptions{.max_difference_sigma = 20.0, .look_ahead = 2};
   all.average = 2;
-  all.stack = true;
-  all.outputs = {DecodedPlane::averaged};
   EXPECT_EQ(decode_recording(all, *backend_).frames.size(), 2u);
   for (std::size_t f = 0; f < 2; ++f)  // a mean of two frames, and a single frame
     EXPECT_EQ(plane("all-averaged.npy", f), std::vector<float>(6 * 5, 3.0F));
@@ -215,17 +157,15 @@ TEST_F(DecodeRecording, LookAheadEndsWithTheLastMean) {
 
 TEST_F(DecodeRecording, MeansOfEqualFramesDifferOnlyInTheirNoise) {
   RawFrames equal = raw_;
-  const auto frame_size = static_cast<std::ptrdiff_t>(equal.values.size() / 3);
   equal.frames = 5;
-  equal.values.assign(raw_.values.begin(), raw_.values.begin() + frame_size);
-  for (int f = 1; f < 5; ++f)
-    equal.values.insert(equal.values.end(), raw_.values.begin(), raw_.values.begin() + frame_size);
+  equal.values.clear();
+  for (int f = 0; f < 5; ++f) equal.values.insert(equal.values.end(), raw_.frame(0), raw_.frame(1));
   write_raw_frames(path("equal.npy"), equal, OutputPolicy::refuse_existing);
-  DecodeRequest alone = request("alone.npy"), mean = request("mean.npy");
-  alone.raw = mean.raw = {path("equal.npy")};
-  alone.stack = mean.stack = true;
-  alone.outputs =
-      mean.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
+  DecodeRequest alone =
+      stack("alone.npy", {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged});
+  alone.raw = {path("equal.npy")};
+  DecodeRequest mean = alone;
+  mean.output = path("mean.npy");
   alone.frame = 0;
   mean.average = 3;
   decode_recording(alone, *backend_);
@@ -244,9 +184,8 @@ TEST_F(DecodeRecording, MeansOfEqualFramesDifferOnlyInTheirNoise) {
 }
 
 TEST_F(DecodeRecording, AveragedInputHasTheNoiseOfAllItsMeasurements) {
-  DecodeRequest single = request("single.npy");
-  single.stack = true;
-  single.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
+  DecodeRequest single =
+      stack("single.npy", {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged});
   DecodeRequest means = single;
   means.output = path("means.npy");
   means.averaged = 9.0;
@@ -266,8 +205,7 @@ TEST_F(DecodeRecording, AveragedInputHasTheNoiseOfAllItsMeasurements) {
 }
 
 TEST_F(DecodeRecording, OneFilePerMeasurementEqualsAnInterleavedRecording) {
-  DecodeRequest together = request("together.npy"), apart = request("apart.npy");
-  together.stack = apart.stack = true;
+  DecodeRequest together = stack("together.npy", {}), apart = stack("apart.npy", {});
   apart.raw.clear();
   for (std::size_t k = 0; k < 4; ++k) {
     NpyArray phase(NpyType::float32, {3, 6, 5});
@@ -294,10 +232,8 @@ TEST_F(DecodeRecording, OneFilePerMeasurementEqualsAnInterleavedRecording) {
 }
 
 TEST_F(DecodeRecording, MeansAreIndependentOfBandsAndFiltersUseTheirNoise) {
-  DecodeRequest mean = request("whole.npy");
+  DecodeRequest mean = stack("whole.npy", {DecodedPlane::depth, DecodedPlane::deviation});
   mean.average = 2;
-  mean.stack = true;
-  mean.outputs = {DecodedPlane::depth, DecodedPlane::deviation};
   decode_recording(mean, *backend_);
   mean.output = path("bands.npy");
   mean.memory_mb = 0.001;
@@ -307,7 +243,7 @@ TEST_F(DecodeRecording, MeansAreIndependentOfBandsAndFiltersUseTheirNoise) {
                                    read_npy(path("bands").string() + plane).bytes()));
   mean.memory_mb = 64;
   mean.output = path("filtered.npy");
-  mean.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
+  mean.outputs = depth_and_averaged;
   mean.filter = FilterOptions::of(FilterStrength::light);
   decode_recording(mean, *backend_);
   for (std::size_t f = 0; f < 2; ++f)
@@ -320,8 +256,6 @@ TEST_F(DecodeRecording, MeansAreIndependentOfBandsAndFiltersUseTheirNoise) {
 
 TEST_F(DecodeRecording, ClippedAndInvalidPixelsOfOneFrameStaySoInTheMean) {
   camera_.sensor.full_well_e = 5000.0;
-  const std::unique_ptr<FrameBackend> backend = cpu_backend(
-      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
   const auto number = [&](int frame, int pixel) -> float& {
     return raw_.values[static_cast<std::size_t>((frame * 6 * 5 + pixel) * 4)];
   };
@@ -332,61 +266,54 @@ TEST_F(DecodeRecording, ClippedAndInvalidPixelsOfOneFrameStaySoInTheMean) {
   DecodeRequest mean = request("d.npz");
   mean.raw = {path("some.npy")};
   mean.average = 3;
-  const DecodedRecording result = decode_recording(mean, *backend);
+  const DecodedRecording result = decode_recording(mean, *backend_of(camera_));
   EXPECT_EQ(result.total().of(PixelStatus::saturated), 1);
   EXPECT_EQ(result.total().of(PixelStatus::invalid), 2);
 }
 
 TEST_F(DecodeRecording, RejectsInvalidRequestsBeforeWriting) {
-  const auto refused = [&](const DecodeRequest& wrong, const char* words) {
-    EXPECT_THAT([&] { decode_recording(wrong, *backend_); },
-                ThrowsMessage<std::invalid_argument>(HasSubstr(words)));
+  const int before = directory_.files();
+  DecodeRequest wrong;
+  const auto decode = [&] { decode_recording(wrong, *backend_); };
+  const auto refused = [&](const auto& change, const char* words) {
+    wrong = request("d.npz");
+    change(wrong);
+    EXPECT_THAT(decode, ThrowsMessage<std::invalid_argument>(HasSubstr(words)));
   };
-  DecodeRequest wrong = request("d.npz");
-  wrong.frame = 3;
-  refused(wrong, "frame = 3");
-  wrong.stack = true;
-  refused(wrong, "stack = true");
+  refused([](DecodeRequest& r) { r.frame = 3; }, "frame = 3");
+  refused([](DecodeRequest& r) { r.stack = true; }, "stack = true");
+  refused([](DecodeRequest& r) { r.averaged = 0.0; }, "averaged = 0");
+  refused([](DecodeRequest& r) { r.raw.clear(); }, "raw = no file");
+  refused([](DecodeRequest& r) { r.outputs = {DecodedPlane::ratio}; }, "outputs = ratio");
+  refused([](DecodeRequest& r) { r.memory_mb = 0.0; }, "memory_mb = 0; must be in (0, 1000000000]");
+  refused([](DecodeRequest& r) { r.average = 0; }, "average = 0; must be >= 1");
+  refused([](DecodeRequest& r) { r.average = 4; }, "average = 4; ");
+  refused([](DecodeRequest& r) { r.time_filter = TimeFilterOptions{.max_frames = 0}; },
+          "TimeFilterOptions::max_frames = 0; must be >= 1");
+  refused([](DecodeRequest& r) { r.filter = FilterOptions{.windows = 4}; },
+          "windows = 4; must be in [1, 3]");
+  const auto signal_as_pfm = [&](DecodeRequest& r) {
+    r.output = path("d.pfm");
+    r.outputs = {DecodedPlane::signal};
+  };
+  refused(signal_as_pfm, "a .pfm file contains only depth");
+  const auto third_mean = [](DecodeRequest& r) {
+    r.average = 2;
+    r.frame = 2;
+  };
+  refused(third_mean, "contains 3 frames, 2 means, counted from 0");
   wrong = request("d.npz");
-  wrong.averaged = 0.0;
-  refused(wrong, "averaged = 0");
-  wrong = request("d.npz");
-  wrong.raw.clear();
-  refused(wrong, "raw = no file");
-  wrong = request("d.npz");
-  wrong.outputs = {DecodedPlane::ratio};
-  refused(wrong, "outputs = ratio");
-  wrong = request("d.pfm");
-  wrong.outputs = {DecodedPlane::signal};
-  refused(wrong, "a .pfm file contains only depth");
-  wrong = request("d.npz");
-  wrong.memory_mb = 0.0;
-  refused(wrong, "memory_mb = 0; must be in (0, 1000000000]");
-  wrong = request("d.npz");
-  wrong.average = 0;
-  refused(wrong, "average = 0; must be >= 1");
-  wrong.average = 4;
-  refused(wrong, "average = 4; ");
-  wrong.average = 2;
-  wrong.frame = 2;
-  refused(wrong, "contains 3 frames, 2 means, counted from 0");
-  wrong = request("d.npz");
-  wrong.time_filter = TimeFilterOptions{.max_frames = 0};
-  refused(wrong, "TimeFilterOptions::max_frames = 0; must be >= 1");
-  wrong.time_filter.reset();
-  wrong.filter = FilterOptions{.windows = 4};
-  refused(wrong, "windows = 4; must be in [1, 3]");
   wrong.filter = FilterOptions{};
   wrong.memory_mb = 0.1;
-  EXPECT_THAT(
-      [&] { decode_recording(wrong, *backend_); },
-      ThrowsMessage<IoError>(HasSubstr("to be filtered and written to this output; expected at "
-                                       "most 0.1 MB (without filters, mixed and undistort")));
+  EXPECT_THAT(decode,
+              ThrowsMessage<IoError>(HasSubstr(
+                  "to be filtered and written to this output; expected at most 0.1 MB (without "
+                  "filters, mixed and undistort")));
   wrong = request("raw.npy");
   wrong.frame = 0;
   wrong.policy = OutputPolicy::overwrite;
-  EXPECT_THAT([&] { decode_recording(wrong, *backend_); },
-              ThrowsMessage<IoError>(HasSubstr("choose another name")));
+  EXPECT_THAT(decode, ThrowsMessage<IoError>(HasSubstr("choose another name")));
+  EXPECT_EQ(directory_.files(), before);
 }
 
 TEST(DecodedPlanes, HaveUniqueNames) {

@@ -5,8 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
+#include "damaged_directory.hpp"
 #include "damaged_files.hpp"
 #include "io/shared/read_file.hpp"
 #include "same_code.hpp"
@@ -106,6 +105,19 @@ TEST(DesignDirectory, ReadingUndoesWriting) {
     expect_same_candidate(record.result.candidates[i], designed().candidates[i]);
 }
 
+DesignRecord written_and_read(const Camera& camera, const DesignResult& result,
+                              const DesignOptions& options) {
+  const TemporaryDirectory place;
+  const DesignDirectory directory(place / "d");
+  directory.write(camera, result, options, OutputPolicy::refuse_existing);
+  return directory.read();
+}
+
+DesignResult judged(const Camera& camera) {
+  return judge(camera, {{.code = build_family("sinusoid-k4", camera), .method = "family"}},
+               small_options());
+}
+
 TEST(DesignDirectory, KeepsMultipathErrors) {
   Camera two_buckets = coarse_camera("paper-10f0", DepthErrorKind::circular);
   two_buckets.sensor.taps = 2;
@@ -116,10 +128,7 @@ TEST(DesignDirectory, KeepsMultipathErrors) {
   options.trials = 1000;
   const DesignResult result = design(two_buckets, options);
   EXPECT_THAT(result.winner().code.name(), testing::HasSubstr("hamiltonian-k5"));
-  const TemporaryDirectory place;
-  const DesignDirectory directory(place / "d");
-  directory.write(two_buckets, result, options, OutputPolicy::refuse_existing);
-  const DesignRecord record = directory.read();
+  const DesignRecord record = written_and_read(two_buckets, result, options);
   EXPECT_EQ(record.camera, two_buckets);
   ASSERT_EQ(record.result.candidates.size(), result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
@@ -138,13 +147,9 @@ TEST(DesignDirectory, KeepsMultipathErrors) {
 TEST(DesignDirectory, KeepsTheOrderOfExposures) {
   Camera moving = coarse_camera("paper-10f0");
   moving.operating.velocity_m_per_s = 1.0;
-  const DesignOptions options = small_options();
-  const DesignResult result =
-      judge(moving, {{.code = build_family("sinusoid-k4", moving), .method = "family"}}, options);
-  const TemporaryDirectory place;
-  const DesignDirectory directory(place / "d");
-  directory.write(moving, result, options, OutputPolicy::refuse_existing);
-  const auto read = directory.read().result.winner().exposure_order;
+  const DesignResult result = judged(moving);
+  const DesignRecord record = written_and_read(moving, result, small_options());
+  const auto& read = record.result.winner().exposure_order;
   const auto& written = result.winner().exposure_order;
   ASSERT_TRUE(read && written);
   EXPECT_EQ(read->order, written->order);
@@ -157,13 +162,8 @@ TEST(DesignDirectory, KeepsErrorsWithOtherCameras) {
   lit.operating.interference.emplace();
   for (const bool uniform_albedo : {false, true}) {
     lit.operating.uniform_albedo = uniform_albedo;
-    const DesignOptions options = small_options();
-    const DesignResult result =
-        judge(lit, {{.code = build_family("sinusoid-k4", lit), .method = "family"}}, options);
-    const TemporaryDirectory place;
-    const DesignDirectory directory(place / "d");
-    directory.write(lit, result, options, OutputPolicy::refuse_existing);
-    const DesignRecord record = directory.read();
+    const DesignResult result = judged(lit);
+    const DesignRecord record = written_and_read(lit, result, small_options());
     EXPECT_EQ(record.camera, lit);
     const auto& read = record.result.winner().interference;
     const auto& written = result.winner().interference;
@@ -228,11 +228,8 @@ TEST(DesignStore, ReturnsADesignForTheSameInputsOnly) {
   EXPECT_FALSE(
       reused([](Camera& c, DesignOptions&) { c.sensor.impulse_response.samples[0] = 0.3; }));
   EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.seed = 9; }));
-  EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.search_trials = 201; }));
-  EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.best_rotation = false; }));
   EXPECT_TRUE(reused([](Camera&, DesignOptions& o) { o.factorize.seed = 9; })) << "not used";
   EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.factorize.kept = 4; }));
-  EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.search.finalists = 9; }));
   EXPECT_FALSE(
       reused([](Camera&, DesignOptions& o) { o.target->measurements[0].samples[3] += 1e-9; }));
   EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.target->measurements[0].ideal.reset(); }));
@@ -242,24 +239,18 @@ TEST(DesignStore, ReturnsADesignForTheSameInputsOnly) {
 
 fs::path only_file(const fs::path& directory) { return fs::directory_iterator(directory)->path(); }
 
-/// Does not synchronize the disk, unlike an atomic file.
-void overwrite(const fs::path& path, std::span<const std::byte> bytes) {
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
-}
-
 TEST(DesignStore, DamagedDesignsAreDesignedAgain) {
   const TemporaryDirectory place;
   keep_in(place, designed().candidates.back());
   const fs::path path = only_file(place / "finished");
   const FileBytes whole = read_binary_file(path);
   for (std::size_t length = 0; length < whole.size(); length += 199) {
-    overwrite(path, std::span(whole).first(length));
+    overwrite_bytes(path, std::span(whole).first(length));
     EXPECT_FALSE(kept_in(place, camera(), options())) << "cut after " << length << " bytes";
   }
   for (std::uint64_t i = 0; i < 150; ++i) {
     RandomStream random(3, i);
-    overwrite(path, damaged(whole, random));
+    overwrite_bytes(path, damaged(whole, random));
     const auto kept = kept_in(place, camera(), options());  // may be read or not, but never throws
     if (kept) {
       EXPECT_NO_THROW(require_fits(kept->code, camera()));
@@ -267,36 +258,13 @@ TEST(DesignStore, DamagedDesignsAreDesignedAgain) {
   }
 }
 
-/// Truncates and damages every file of a design: read() returns a design or throws an IoError that
-/// names a file of the directory.
 TEST(DesignDirectory, DamageIsReadOrRejectedWithTheFileName) {
   const TemporaryDirectory place;
   const DesignDirectory directory(place.path());
   directory.write(camera(), designed(), options(), OutputPolicy::overwrite);
   for (const fs::path& path : {place / "design.json", place / "details.json", place / "camera.toml",
-                               place / "codes" / "sinusoid-k4.code.json"}) {
-    const FileBytes whole = read_binary_file(path);
-    int refused = 0;
-    const auto read = [&] {
-      try {
-        directory.read();
-      } catch (const IoError& error) {
-        ++refused;
-        EXPECT_THAT(error.what(), HasSubstr(place.path().string()));
-      }
-    };
-    for (std::size_t length = 0; length + 2 < whole.size(); length += 1 + whole.size() / 40) {
-      overwrite(path, std::span(whole).first(length));
-      EXPECT_NO_THROW(read()) << path << " cut after " << length;
-    }
-    EXPECT_GT(refused, 20) << path;
-    for (std::uint64_t i = 0; i < 60; ++i) {
-      RandomStream random(4, i);
-      overwrite(path, damaged(whole, random));
-      EXPECT_NO_THROW(read()) << path << " damaged, case " << i;
-    }
-    overwrite(path, whole);
-  }
+                               place / "codes" / "sinusoid-k4.code.json"})
+    expect_damage_of_file_read_or_refused(place.path(), path, 60, [&] { directory.read(); });
   EXPECT_EQ(directory.read().result.candidates.size(), designed().candidates.size());
 }
 

@@ -172,8 +172,6 @@ std::string refusal(std::string_view text) {
   return io_error_of([&] { parse_json(text, "a.json"); });
 }
 
-TEST(JsonText, ParsesJson) { EXPECT_EQ(parse_json("{\"n\": [1, 2]}", "a.json")["n"][1], 2); }
-
 TEST(JsonText, ErrorsNameLineAndColumn) {
   EXPECT_THAT(refusal("{\n  \"a\": 1,\n  \"b\": x\n}"), StartsWith("a.json:3:8: "));
   EXPECT_THAT(refusal("[1 2]"), StartsWith("a.json:1:4: "));

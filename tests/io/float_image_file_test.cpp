@@ -112,20 +112,19 @@ TEST(Exr, RejectsUnsupportedFiles) {
 // The OpenEXR library assumes that attributes are as long as their types: other sizes made it
 // misinterpret the following bytes and allocate gigabytes for a file of 600 bytes.
 TEST(Exr, RejectsAttributesOfOtherSizesThanTheirTypes) {
-  const auto refusal = [](const std::string& type, const std::string& value) {
-    const FileBytes file =
-        small_file(1, 0, std::string("\1\0\0\0\0\0\0\0", 8), attribute("a", type, value));
-    return io_error_of([&] { parse_exr(file, "a.exr"); });
+  const auto parse = [](const std::string& type, const std::string& value) {
+    parse_exr(small_file(1, 0, std::string("\1\0\0\0\0\0\0\0", 8), attribute("a", type, value)),
+              "a.exr");
+  };
+  const auto refusal = [&](const std::string& type, const std::string& value) {
+    return io_error_of([&] { parse(type, value); });
   };
   EXPECT_THAT(refusal("v3f", std::string(8, '\0')), HasSubstr("found 8 bytes of type 'v3f'"));
   EXPECT_THAT(refusal("box2i", std::string(20, '\0')), HasSubstr("expected 16"));
   EXPECT_THAT(refusal("preview", std::string("\1\0\0\0\xff\xff\xff\xff", 8)),
               HasSubstr("type 'preview'"));
   EXPECT_THAT(refusal("chlist", std::string(3, '\0')), HasSubstr("expected 1"));
-  for (const char* any : {"string", "ours"})
-    EXPECT_NO_THROW(parse_exr(
-        small_file(1, 0, std::string("\1\0\0\0\0\0\0\0", 8), attribute("a", any, "some words")),
-        "a.exr"));
+  for (const char* any : {"string", "ours"}) EXPECT_NO_THROW(parse(any, "some words"));
 }
 
 TEST(Exr, RefusesEveryTruncation) {
@@ -404,7 +403,6 @@ TEST(AlbedoOfPicture, IsScaledDownIfBrighterThanOne) {
 }
 
 TEST(AlbedoOfPicture, MayBeUnknownWithoutReturn) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
   Image<float> picture(1, 2, 0.5f), depth_m(1, 2, 1.0f);
   picture(0, 1) = nan;
   EXPECT_EQ(io_error_of([&] { albedo_of_picture(picture, "a.npy", depth_m); }),
@@ -425,6 +423,47 @@ TEST(AmbientScale, IsFiniteAndNeverNegative) {
   write_float_image(directory / "a.npy", picture, "a", OutputPolicy::overwrite);
   EXPECT_THAT(io_error_of([&] { read_ambient_scale(directory / "a.npy"); }),
               testing::EndsWith("a.npy: row 0, column 1: found -1; expected a finite number >= 0"));
+}
+
+TEST(MultipathFile, WrittenReturnsAreReadBack) {
+  SceneImage scene(1, 3);
+  scene.depth_m.pixels = {1.0f, 2.0f, 3.0f};
+  SceneLight light;
+  light.returns = MultipathReturns(1, 3);
+  const std::vector<MultipathReturn> two = {{1.5f, 0.5f}, {2.25f, 0.125f}}, one = {{3.0f, 0.0f}};
+  light.returns.append_pixel(two);
+  light.returns.append_pixel({});
+  light.returns.append_pixel(one);
+  const TemporaryDirectory directory;
+  const auto path = directory / "truth.npz";
+  write_multipath_truth(path, multipath_truth(scene, light, {}), light,
+                        OutputPolicy::refuse_existing);
+  const MultipathReturns read = read_multipath_returns(path, 1, 3);
+  EXPECT_EQ(read.first, light.returns.first);
+  ASSERT_EQ(read.returns.size(), light.returns.returns.size());
+  for (std::size_t i = 0; i < read.returns.size(); ++i) {
+    EXPECT_EQ(read.returns[i].distance_m, light.returns.returns[i].distance_m);
+    EXPECT_EQ(read.returns[i].ratio, light.returns.returns[i].ratio);
+  }
+  read.validate(scene, 10.0);
+}
+
+TEST(MultipathFile, RejectsListsThatDoNotMatchTheScene) {
+  const TemporaryDirectory directory;
+  const auto refuses = [&](const std::vector<double>& first, const std::vector<float>& distance_m,
+                           const std::vector<float>& ratio, const char* words) {
+    const auto path = directory / "returns.npz";
+    NpzArrays arrays;
+    arrays.emplace("first", NpyArray::of<double>({first.size()}, first));
+    arrays.emplace("distance_m", NpyArray::of<float>({distance_m.size()}, distance_m));
+    arrays.emplace("ratio", NpyArray::of<float>({ratio.size()}, ratio));
+    write_npz(path, arrays, overwrite);
+    EXPECT_THAT(io_error_of([&] { read_multipath_returns(path, 1, 2); }), HasSubstr(words));
+  };
+  refuses({0, 1}, {1.0f}, {0.1f}, "found 2 entries; expected 3");
+  refuses({0, 1, 1}, {1.0f}, {}, "found 0 entries; expected 1");
+  refuses({0, 0.5, 1}, {1.0f}, {0.1f}, "entry 1: found 0.5; expected a whole number in [0, 1]");
+  refuses({0, 1, 4}, {1.0f}, {0.1f}, "entry 2: found 4");
 }
 
 }  // namespace

@@ -60,17 +60,12 @@ void write(const std::filesystem::path& path, const std::vector<Numbers>& all) {
   H5Fclose(file);
 }
 
-const std::vector<hid_t>& stored_types() {
-  static const std::vector<hid_t> types = {
-      H5T_STD_I8LE,  H5T_STD_U8BE,  H5T_STD_I16BE,  H5T_STD_U16LE,  H5T_STD_I32LE, H5T_STD_U32BE,
-      H5T_STD_I64LE, H5T_STD_U64LE, H5T_IEEE_F32BE, H5T_IEEE_F32LE, H5T_IEEE_F64LE};
-  return types;
-}
-
 TEST(Hdf5, ReadsAnyRangeOfAnyTypeInAnyChunks) {
   const TemporaryDirectory directory;
   const std::vector<hsize_t> shape = {2, 3, 5, 4};  // 120 numbers, which fit int8
-  for (const hid_t stored : stored_types())
+  for (const hid_t stored :
+       {H5T_STD_I8LE, H5T_STD_U8BE, H5T_STD_I16BE, H5T_STD_U16LE, H5T_STD_I32LE, H5T_STD_U32BE,
+        H5T_STD_I64LE, H5T_STD_U64LE, H5T_IEEE_F32BE, H5T_IEEE_F32LE, H5T_IEEE_F64LE})
     for (const std::vector<hsize_t>& chunk :
          {std::vector<hsize_t>{}, {1, 2, 2, 3}, {2, 3, 5, 4}, {1, 1, 1, 1}}) {
       write(directory / "a.h5", {{.name = "raw",

@@ -159,22 +159,18 @@ TEST(Tiff, RejectsUnsupportedImagesWithTheReason) {
   EXPECT_THAT(io_error_of([] { parse_tiff(FileBytes(3), "a.tiff"); }), HasSubstr("a.tiff"));
 }
 
-FileBytes pgm(const std::string& text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 TEST(Pgm, ReadsBinaryAndTextOfBothSizes) {
   const std::string wide("P5\n# made by hand\n2 1 4095\n\x0f\xff\x00\x01", 31);
-  EXPECT_THAT(parse_pgm(pgm(wide), "a.pgm").as<std::uint16_t>(), ElementsAre(4095, 1));
-  EXPECT_THAT(parse_pgm(pgm("P5 2 1 255 ab"), "a.pgm").as<std::uint8_t>(), ElementsAre('a', 'b'));
-  EXPECT_THAT(parse_pgm(pgm("P2 2 1 4095\n4095 # right\n 7"), "a.pgm").as<std::uint16_t>(),
+  EXPECT_THAT(parse_pgm(bytes_of(wide), "a.pgm").as<std::uint16_t>(), ElementsAre(4095, 1));
+  EXPECT_THAT(parse_pgm(bytes_of("P5 2 1 255 ab"), "a.pgm").as<std::uint8_t>(),
+              ElementsAre('a', 'b'));
+  EXPECT_THAT(parse_pgm(bytes_of("P2 2 1 4095\n4095 # right\n 7"), "a.pgm").as<std::uint16_t>(),
               ElementsAre(4095, 7));
 }
 
 TEST(Pgm, RejectsDamagedFilesWithTheReason) {
   const auto refusal = [](const std::string& text) {
-    return io_error_of([&] { parse_pgm(pgm(text), "a.pgm"); });
+    return io_error_of([&] { parse_pgm(bytes_of(text), "a.pgm"); });
   };
   EXPECT_THAT(refusal("P6 1 1 255 abc"), HasSubstr("expected P5 (binary) or P2 (text)"));
   EXPECT_THAT(refusal("P5 2 1 65535 abc"), HasSubstr("found 3 bytes of data; expected 4"));
@@ -198,7 +194,7 @@ std::vector<std::filesystem::path> write_phases(const TemporaryDirectory& direct
     for (const std::uint16_t number : numbers) append(pixels, number, true);
     TiffWriter tiff = tiff_of(1, true, 1);
     tiff.blocks = {pixels};
-    FileBytes file = extension == ".tif" ? tiff.file() : pgm("P5 70 40 65535\n");
+    FileBytes file = extension == ".tif" ? tiff.file() : bytes_of("P5 70 40 65535\n");
     if (extension == ".pgm") file.insert(file.end(), pixels.begin(), pixels.end());
     write_file_atomically(files.back(), file, overwrite);
   }

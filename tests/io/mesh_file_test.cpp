@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -36,9 +37,10 @@ std::string refusal(std::string_view text, std::string_view file) {
 }
 
 template <typename Value>
-std::string raw(Value value) {
+std::string raw(Value value, bool big_endian = false) {
   std::string bytes(sizeof(Value), '\0');
   std::memcpy(bytes.data(), &value, sizeof(Value));
+  if (big_endian) std::ranges::reverse(bytes);
   return bytes;
 }
 
@@ -57,22 +59,17 @@ std::string ply_header(const std::string& format, int vertices = 4,
 const std::string ply_rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 const std::string ply_square = ply_header("ascii") + ply_rows;
 
-std::string ply_big_endian_square() {
-  const auto turned = [](std::string bytes) { return std::string(bytes.rbegin(), bytes.rend()); };
-  std::string text = ply_header("binary_big_endian");
-  for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})
-    text += turned(raw(static_cast<float>(f)));
-  for (const int i : {0, 1, 2}) text += (i == 0 ? "\3" : "") + turned(raw(i));
-  for (const int i : {0, 2, 3}) text += (i == 0 ? "\3" : "") + turned(raw(i));
-  return text;
+/// The square with another last face.
+std::string ply_ending(const std::string& face) {
+  return ply_square.substr(0, ply_square.size() - std::string("3 0 2 3\n").size()) + face;
 }
 
 template <typename Number>
-std::string ply_binary_square(const std::string& type) {
-  std::string text = ply_header("binary_little_endian", 4, type);
-  for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) text += raw(static_cast<Number>(f));
-  for (const int i : {0, 1, 2}) text += (i == 0 ? "\3" : "") + raw(i);
-  for (const int i : {0, 2, 3}) text += (i == 0 ? "\3" : "") + raw(i);
+std::string ply_binary_square(const std::string& type, bool big_endian = false) {
+  std::string text = ply_header(big_endian ? "binary_big_endian" : "binary_little_endian", 4, type);
+  for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})
+    text += raw(static_cast<Number>(f), big_endian);
+  for (const int i : {0, 1, 2, 0, 2, 3}) text += (i == 0 ? "\3" : "") + raw(i, big_endian);
   return text;
 }
 
@@ -109,7 +106,7 @@ TEST(MeshFile, EveryFormatGivesTheSameSquare) {
   EXPECT_EQ(corners(square)[4], Eigen::Vector3d(1, 1, 0));
   for (const auto& [text, file] :
        {std::pair(ply_square, "a.ply"), std::pair(ply_binary_square<float>("float"), "b.PLY"),
-        std::pair(ply_big_endian_square(), "c.ply"), std::pair(stl_square, "a.stl"),
+        std::pair(ply_binary_square<float>("float", true), "c.ply"), std::pair(stl_square, "a.stl"),
         std::pair(stl_binary_square(), "b.stl")}) {
     const TriangleMesh mesh = parse(text, file);
     EXPECT_EQ(mesh.vertices.size(), 4u) << file;
@@ -209,9 +206,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"a.obj", three + "f 1x 2 3\n", "a.obj:4: found '1x' in a face"},
         BadMesh{"a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
                 "a.obj:1: found the coordinate 'nan'; expected a finite number"},
-        BadMesh{"a.obj", "v 0 0 0\nv 1 -inf 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2: found the coord"},
         BadMesh{"a.obj", "v 0 0 0\nv 1 1e99 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2: found the coord"},
-        BadMesh{"a.obj", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2: found the coord"},
         BadMesh{"a.obj", "v 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n",
                 "a.obj:1: found a vertex of 2 numbers"},
         BadMesh{"a.fbx", three, "found the extension '.fbx'; expected one of .obj, .ply, .stl"},
@@ -221,27 +216,18 @@ INSTANTIATE_TEST_SUITE_P(
     Ply, MeshFileRefuses,
     testing::Values(
         BadMesh{"a.ply", "", "empty file"}, BadMesh{"a.ply", "plx\n", "byte 0: expected 'ply'"},
-        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 4\n",
+        BadMesh{"a.ply", ply_ending("3 0 2 4\n"),
                 "face 1: found the vertex index 4; expected 0 to 3"},
-        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 -1\n",
-                "face 1: found the vertex index -1"},
-        BadMesh{"a.ply",
-                ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 4294967296\n",
-                "found 4294967296 in a list of whole numbers"},
-        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 1.5\n",
-                "found 1.5 in a list of whole numbers"},
-        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 1e30\n",
-                "found 1e+30 in a list of whole numbers"},
-        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 nan\n",
-                "found nan in a list of whole numbers"},
+        BadMesh{"a.ply", ply_ending("3 0 2 -1\n"), "face 1: found the vertex index -1"},
+        BadMesh{"a.ply", ply_ending("3 0 2 4294967296\n"), "found 4294967296 in a list of whole"},
+        BadMesh{"a.ply", ply_ending("3 0 2 1.5\n"), "found 1.5 in a list of whole numbers"},
+        BadMesh{"a.ply", ply_ending("3 0 2 nan\n"), "found nan in a list of whole numbers"},
         BadMesh{"a.ply", ply_header("ascii") + "0 0 0\nnan 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
                 "vertex 1: found (nan, 0, 0); expected finite numbers"},
-        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n",
-                "the file ends here; expected face"},
+        BadMesh{"a.ply", ply_ending(""), "the file ends here; expected face"},
         BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
                 "found 2 values for one vertex; expected 3"},
-        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n0\n",
-                "face 1: found 0 corners; expected 3 or more"},
+        BadMesh{"a.ply", ply_ending("0\n"), "face 1: found 0 corners; expected 3 or more"},
         BadMesh{"a.ply", ply_header("ascii", 400000000) + ply_rows, "400000000 rows announced"},
         BadMesh{"a.ply", ply_header("ascii", 3) + ply_rows, "a.ply: byte "},
         BadMesh{"a.ply",
@@ -377,18 +363,14 @@ TEST(PolygonCutter, EveryCornerOfALongPolygonIsInATriangle) {
 
 PointCloud test_cloud() {
   PointCloud cloud;
-  cloud.points_m = {{1.0f, 2.0f, 3.0f}, {-1.5f, 0.0f, 1e-3f}};
-  cloud.scalars = {{"intensity", {0.25f, 4.0f}}, {"confidence", {1.0f, 0.5f}}};
-  cloud.colours = {{0, 128, 255}, {1, 2, 3}};
+  cloud.points_m = {{1.0f, -2.0f, 0.0f}};
+  cloud.scalars = {{"intensity", {0.5f}}};
+  cloud.colours = {{1, 2, 255}};
   return cloud;
 }
 
 TEST(PointCloud, TheFileFollowsTheFormat) {
-  PointCloud cloud;
-  cloud.points_m = {{1.0f, -2.0f, 0.0f}};
-  cloud.scalars = {{"intensity", {0.5f}}};
-  cloud.colours = {{1, 2, 255}};
-  EXPECT_EQ(serialize_ply(cloud),
+  EXPECT_EQ(serialize_ply(test_cloud()),
             bytes_of(std::string("ply\nformat binary_little_endian 1.0\nelement vertex 1\n"
                                  "property float x\nproperty float y\nproperty float z\n"
                                  "property float intensity\nproperty uchar red\n"
@@ -398,15 +380,15 @@ TEST(PointCloud, TheFileFollowsTheFormat) {
 
 TEST(PointCloud, RejectsWritingInvalidClouds) {
   PointCloud cloud = test_cloud();
-  cloud.colours.pop_back();
+  cloud.colours.push_back({3, 2, 1});
   EXPECT_THROW(serialize_ply(cloud), std::invalid_argument);
-  for (const char* name : {"x", "red", "confidence", "two words", ""}) {
+  for (const char* name : {"x", "red", "intensity", "two words", ""}) {
     cloud = test_cloud();
-    cloud.scalars[0].name = name;
+    cloud.scalars.push_back({name, {1.0f}});
     EXPECT_THROW(serialize_ply(cloud), std::invalid_argument) << name;
   }
   cloud = test_cloud();
-  cloud.scalars[1].values.push_back(1.0f);
+  cloud.scalars[0].values.push_back(1.0f);
   EXPECT_THROW(serialize_ply(cloud), std::invalid_argument);
 }
 

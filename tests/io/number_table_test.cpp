@@ -194,7 +194,6 @@ TEST_F(ResponseFile, ReadsOscilloscopeFiles) {
     EXPECT_NEAR(response.time_step_s, 1e-9, 1e-15) << text;
   }
   EXPECT_EQ(read_impulse_response(write("r.csv", "0,1\n1,3\n2,0.5\n"), 2e-9).samples, expected);
-  EXPECT_THAT(refusal("1\n9.91E+37\n", 1e-9), HasSubstr("r.csv:2:1: found '9.91E+37'"));
 }
 
 TEST_F(ResponseFile, ValuesWithoutTimesNeedAStep) {

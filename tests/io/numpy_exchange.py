@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The NumPy side of numpy_exchange_test.cpp: `check` its files, or `write` files for it."""
+"""The NumPy side of npy_test.cpp: `check` its files, or `write` files for it."""
 
 import io
 import itertools

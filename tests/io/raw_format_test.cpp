@@ -367,27 +367,5 @@ TEST(RawFrames, HalfPrecisionIsReadAsFloat) {
   }
 }
 
-TEST(RawFrames, Int16IsReadAsFloat) {
-  const TemporaryDirectory directory;
-  const std::vector<std::int16_t> values = {-32768, -1, 0, 1, 2, 32767};
-  const auto array = NpyArray::of<std::int16_t>({1, 2, 3}, values);
-  write_npy(directory / "a.npy", array, OutputPolicy::overwrite);
-  write_npz(directory / "a.npz", {{"raw", array}}, OutputPolicy::overwrite);
-  for (const char* name : {"a.npy", "a.npz"}) {
-    const RawFramesReader reader(directory / name);
-    EXPECT_EQ(reader.type(), NpyType::float32);
-    EXPECT_TRUE(reader.holds_integers());
-    EXPECT_THAT(reader.read_frame(0).values, testing::ElementsAre(-32768, -1, 0, 1, 2, 32767));
-    EXPECT_EQ(read_raw_frames(directory / name).values, reader.read_frame(0).values);
-  }
-  RawReadOptions planar;
-  planar.layout = RawLayout::planar;
-  const RawFramesReader reader(directory / "a.npy", planar);
-  EXPECT_EQ(reader.measurements(), 1);
-  std::vector<std::byte> buffer;
-  const RawView row = reader.read_rows(0, 1, 1, buffer);
-  EXPECT_EQ(std::get<const float*>(row.data)[2], 32767.0F);
-}
-
 }  // namespace
 }  // namespace tofsmith

@@ -26,8 +26,7 @@ class RawMarkersOfRecordings : public DecodeRecording {
  protected:
   std::unique_ptr<FrameBackend> backend(const std::vector<std::string>& settings) {
     camera_ = with_settings(camera_, settings);
-    return cpu_backend(
-        make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
+    return backend_of(camera_);
   }
   std::unique_ptr<FrameBackend> difference_backend(std::vector<std::string> settings = {}) {
     for (const char* setting : {"sensor.taps=2", "sensor.readout=difference"})
@@ -182,24 +181,16 @@ TEST_F(RawMarkersOfRecordings, ApplyToEachSubtractedTap) {
   expect_first_two(statuses(request, *of_taps));
 
   std::size_t at = 0;
-  const auto bytes = std::as_bytes(std::span(raw));
-  std::vector<std::byte> written;
+  std::vector<std::uint8_t> of_stream;
   DecodedStream result;
   request.outputs = {DecodedPlane::status};
   decode_stream(
-      request, *of_taps,
-      [&](std::span<std::byte> into) {
-        const std::size_t count = std::min(into.size(), bytes.size() - at);
-        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, into.begin());
-        at += count;
-        return count;
-      },
+      request, *of_taps, stream_of(std::as_bytes(std::span(raw)), at),
       [&](std::span<const std::byte> plane) {
-        written.insert(written.end(), plane.begin(), plane.end());
+        for (const std::byte status : plane)
+          of_stream.push_back(std::to_integer<std::uint8_t>(status));
       },
       {}, result);
-  std::vector<std::uint8_t> of_stream(written.size());
-  std::memcpy(of_stream.data(), written.data(), written.size());
   expect_first_two(of_stream);
 }
 

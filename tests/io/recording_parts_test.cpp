@@ -29,30 +29,17 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 /// Two groups of three frames of 6 x 5 pixels.
-class DecodeExposures : public testing::Test {
+class DecodeExposures : public DecodeRecording {
  protected:
-  DecodeExposures() {
-    raw_ = {.frames = 6, .height = 6, .width = 5, .measurements = 4, .values = {}};
-    for (int i = 0; i < 6 * 6 * 5 * 4; ++i)
-      raw_.values.push_back(1000.0F + static_cast<float>(i * 37 % 101));
-    write_raw_frames(path("raw.npy"), raw_, OutputPolicy::refuse_existing);
-    request_.raw = {path("raw.npy")};
-    request_.output = path("hdr.npy");
+  DecodeExposures() : DecodeRecording(6) {
+    request_ = stack("hdr.npy", {DecodedPlane::depth, DecodedPlane::averaged});
     request_.hdr = {1.0, 2.0, 4.0};
-    request_.stack = true;
   }
-  std::filesystem::path path(const char* name) const { return directory_.path() / name; }
 
-  TemporaryDirectory directory_;
-  RawFrames raw_;
   DecodeRequest request_;
-  std::unique_ptr<FrameBackend> backend_ = cpu_backend(
-      make_decoder(DecodeMethod::zncc,
-                   load_decoding_table("hamiltonian-k4", built_in_camera("paper-10f0")).table));
 };
 
 TEST_F(DecodeExposures, AreMergedLikeFramesInMemory) {
-  request_.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
   EXPECT_EQ(decode_recording(request_, *backend_).frames.size(), 2u);
   const Decoder& decoder = *backend_->decoder().correlation_decoder();
   std::vector<float> depth_m, averaged;
@@ -101,81 +88,68 @@ RawFrames edge_seen(const ForwardModel& model, int height, int width) {
   return raw;
 }
 
-DecodeRequest request_of(const RawFrames& raw, const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
-  std::filesystem::create_directories(folder);
-  DecodeRequest request;
-  request.raw = {folder / "raw.npy"};
-  request.output = folder / "depth.npy";
-  request.policy = OutputPolicy::overwrite;
-  write_npy(request.raw.front(),
-            NpyArray::of<float>(
-                {static_cast<std::size_t>(raw.height), static_cast<std::size_t>(raw.width),
-                 static_cast<std::size_t>(raw.measurements)},
-                raw.values),
-            OutputPolicy::overwrite);
-  return request;
-}
+/// A recording of one frame of `edge_seen()`.
+class MixedRecording : public testing::Test {
+ protected:
+  MixedRecording() {
+    request_.raw = {directory_ / "raw.npy"};
+    request_.output = directory_ / "depth.npy";
+    request_.policy = OutputPolicy::overwrite;
+    write_raw_frames(request_.raw.front(), raw_, OutputPolicy::refuse_existing);
+  }
+  void expect_decoded(const Image<float>& expected) const {
+    decode_recording(request_, *cpu_backend(make_decoder(DecodeMethod::zncc, table_)));
+    const Image<float> depth = read_float_image(request_.output, "depth");
+    ASSERT_EQ(depth.size(), expected.size());
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      EXPECT_TRUE(depth.pixels[i] == expected.pixels[i] ||
+                  (std::isnan(depth.pixels[i]) && std::isnan(expected.pixels[i])))
+          << i;
+  }
 
-void expect_decoded(const DecodeRequest& request, const FrameBackend& backend,
-                    const Image<float>& expected) {
-  decode_recording(request, backend);
-  const Image<float> depth = read_float_image(request.output, "depth");
-  ASSERT_EQ(depth.size(), expected.size());
-  for (std::size_t i = 0; i < depth.size(); ++i)
-    EXPECT_TRUE(depth.pixels[i] == expected.pixels[i] ||
-                (std::isnan(depth.pixels[i]) && std::isnan(expected.pixels[i])))
-        << i;
-}
+  const TemporaryDirectory directory_;
+  const Camera camera_ = built_in_camera("paper-10f0");
+  const ForwardModel model_{build_family("hamiltonian-k5", camera_), camera_};
+  const DecodingTable table_ = make_decoding_table(model_, camera_);
+  const Decoder decoder_{table_};
+  const RawFrames raw_ = edge_seen(model_, 24, 31);
+  DecodeRequest request_;
+};
 
-TEST(MixedRecording, FilesEqualTheMarkedFrameEvenIfOnlyDepthIsWritten) {
-  const Camera camera = built_in_camera("paper-10f0");
-  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
-  const DecodingTable table = make_decoding_table(model, camera);
-  const RawFrames raw = edge_seen(model, 24, 31);
-  DecodeRequest request = request_of(raw, "mixed_recording");
-  const Decoder decoder(table);
-  const std::unique_ptr<FrameBackend> backend =
-      cpu_backend(make_decoder(DecodeMethod::zncc, table));
+TEST_F(MixedRecording, FilesEqualTheMarkedFrameEvenIfOnlyDepthIsWritten) {
   for (const MixedPixels mixed : all_mixed_pixels) {
-    DepthImage expected = decoder.decode(raw);
-    EXPECT_GT(mark_mixed_pixels(table, view_of_frame(raw, 0), mixed, DecodedView::of(expected)),
-              raw.height - 3);
-    request.mixed = mixed;
-    expect_decoded(request, *backend, expected.depth_m);
+    DepthImage expected = decoder_.decode(raw_);
+    EXPECT_GT(mark_mixed_pixels(table_, view_of_frame(raw_, 0), mixed, DecodedView::of(expected)),
+              raw_.height - 3);
+    request_.mixed = mixed;
+    expect_decoded(expected.depth_m);
   }
 }
 
-TEST(MixedRecording, FilteredFramesAreFilteredAgainWithoutMixedPixels) {
-  const Camera camera = built_in_camera("paper-10f0");
-  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
-  const DecodingTable table = make_decoding_table(model, camera);
-  const RawFrames raw = edge_seen(model, 24, 31);
-  const RawView measured = view_of_frame(raw, 0);
-  const Decoder decoder(table);
-  const Filter filter(table);
+TEST_F(MixedRecording, FilteredFramesAreFilteredAgainWithoutMixedPixels) {
+  const RawView measured = view_of_frame(raw_, 0);
+  const Filter filter(table_);
   FilteredFrame filtered;
   filter.apply(measured, filtered);
-  DepthImage first(raw.height, raw.width);
-  decoder.decode(filtered.view(), DecodedView::of(first));
+  DepthImage first(raw_.height, raw_.width);
+  decoder_.decode(filtered.view(), DecodedView::of(first));
   UnfilteredPixels unfiltered{.measured = &measured};
-  EXPECT_GT(mark_mixed_pixels(table, filtered.view(), MixedPixels::label, DecodedView::of(first),
+  EXPECT_GT(mark_mixed_pixels(table_, filtered.view(), MixedPixels::label, DecodedView::of(first),
                               {}, {}, unfiltered),
-            raw.height - 3);
-  unfiltered.mixed = Image<std::uint8_t>(raw.height, raw.width);
+            raw_.height - 3);
+  unfiltered.mixed = Image<std::uint8_t>(raw_.height, raw_.width);
   for (std::size_t i = 0; i < first.status.size(); ++i)
     unfiltered.mixed.pixels[i] = first.status.pixels[i] == PixelStatus::mixed ? 1 : 0;
   filter.apply(measured, filtered, {}, unfiltered.mixed);
 
-  DecodeRequest request = request_of(raw, "mixed_and_filtered");
-  request.filter = FilterOptions();
+  request_.filter = FilterOptions();
   for (const MixedPixels mixed : all_mixed_pixels) {
-    DepthImage expected(raw.height, raw.width);
-    decoder.decode(filtered.view(), DecodedView::of(expected));
-    mark_mixed_pixels(table, filtered.view(), mixed, DecodedView::of(expected), {}, {}, unfiltered);
-    request.mixed = mixed;
-    expect_decoded(request, *cpu_backend(make_decoder(DecodeMethod::zncc, table)),
-                   expected.depth_m);
+    DepthImage expected(raw_.height, raw_.width);
+    decoder_.decode(filtered.view(), DecodedView::of(expected));
+    mark_mixed_pixels(table_, filtered.view(), mixed, DecodedView::of(expected), {}, {},
+                      unfiltered);
+    request_.mixed = mixed;
+    expect_decoded(expected.depth_m);
   }
 }
 
@@ -188,8 +162,6 @@ class OffsetNotes : public DecodeRecording {
   std::vector<std::string> notes(double playback_m, std::vector<float> columns_m,
                                  double offset_m = 0.0) {
     camera_.playback = Playback{.offset_m = playback_m};
-    const auto backend = cpu_backend(
-        make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table));
     Image<float> map(6, 5);
     for (std::size_t i = 0; i < map.size(); ++i) map.pixels[i] = columns_m[i % 5];
     write_float_image(path("map.npy"), map, "offset", OutputPolicy::overwrite);
@@ -197,7 +169,7 @@ class OffsetNotes : public DecodeRecording {
     request.policy = OutputPolicy::overwrite;
     request.offset_map = path("map.npy");
     request.offset_m = offset_m;
-    return decode_recording(request, *backend).notes;
+    return decode_recording(request, *backend_of(camera_)).notes;
   }
 };
 

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <ostream>
 
+#include "damaged_directory.hpp"
 #include "damaged_files.hpp"
 #include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
@@ -169,43 +170,39 @@ class SceneTomlRefuses : public testing::TestWithParam<BadScene> {};
 
 TEST_P(SceneTomlRefuses, WithPlaceAndWhatWasExpected) {
   const std::string message = io_error_of([] { parse_scene_toml(GetParam().text, "s.toml"); });
-  EXPECT_THAT(message, StartsWith(GetParam().message));
+  EXPECT_THAT(message, StartsWith(std::string("s.toml:") + GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, SceneTomlRefuses,
     testing::Values(
-        BadScene{"", "s.toml: found no shapes; expected [[plane]]"},
-        BadScene{"[[sphere]]\nradius_m = 1",
-                 "s.toml:1:1: found no sphere[0].centre_m; expected a line such as "
-                 "`centre_m = [0, 0, 2]`"},
-        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 0",
-                 "s.toml:3:12: sphere[0].radius_m: found 0; expected a number > 0"},
-        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n[[sphere]]\ncentre_m = [0, 2]",
-                 "s.toml:5:12: sphere[1].centre_m: found 2 numbers; expected a list of three"},
-        BadScene{"[[sphere]]\ncentre_m = [0, 0, nan]\nradius_m = 1",
-                 "s.toml:2:19: sphere[0].centre_m[2]: found nan; expected a finite number"},
-        BadScene{"[[sphere]]\ncenter_m = [0, 0, 2]\nradius_m = 1",
-                 "s.toml:1:1: found no sphere[0].centre_m"},
+        BadScene{"", " found no shapes; expected [[plane]]"},
         BadScene{
-            "[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\nradius_mm = 5",
-            "s.toml:4:1: unknown key sphere[0].radius_mm; did you mean sphere[0].radius_m, in m?"},
+            "[[sphere]]\nradius_m = 1",
+            "1:1: found no sphere[0].centre_m; expected a line such as `centre_m = [0, 0, 2]`"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 0",
+                 "3:12: sphere[0].radius_m: found 0; expected a number > 0"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n[[sphere]]\ncentre_m = [0, 2]",
+                 "5:12: sphere[1].centre_m: found 2 numbers; expected a list of three"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, nan]\nradius_m = 1",
+                 "2:19: sphere[0].centre_m[2]: found nan; expected a finite number"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\nradius_mm = 5",
+                 "4:1: unknown key sphere[0].radius_mm; did you mean sphere[0].radius_m, in m?"},
         BadScene{"[[shpere]]\ncentre_m = [0, 0, 2]",
-                 "s.toml:1:3: unknown key shpere; did you "
-                 "mean sphere?"},
+                 "1:3: unknown key shpere; did you mean sphere?"},
         BadScene{"[sphere]\ncentre_m = [0, 0, 2]",
-                 "s.toml:1:1: sphere: found a table; expected tables that begin with [[sphere]]"},
-        BadScene{"sphere = [1]", "s.toml:1:11: sphere[0]: found 1; expected tables"},
+                 "1:1: sphere: found a table; expected tables that begin with [[sphere]]"},
+        BadScene{"sphere = [1]", "1:11: sphere[0]: found 1; expected tables"},
         BadScene{"[[plane]]\npoint_m = [0, 0, 2]\nnormal = [0, 0, 0]",
-                 "s.toml:3:10: plane[0].normal: has no length; expected a direction"},
+                 "3:10: plane[0].normal: has no length; expected a direction"},
         BadScene{"[[box]]\ncentre_m = [0, 0, 2]\nsize_m = [1, -1, 1]",
-                 "s.toml:3:10: box[0].size_m: found -1; expected edges > 0"},
+                 "3:10: box[0].size_m: found -1; expected edges > 0"},
         BadScene{"[[capsule]]\nstart_m = [0, 0, 2]\nend_m = [0, 0, 2]\nradius_m = -1",
-                 "s.toml:4:12: capsule[0].radius_m: found -1; expected a number > 0"},
+                 "4:12: capsule[0].radius_m: found -1; expected a number > 0"},
         BadScene{"[[mesh]]\nfile = \"absent.obj\"",
-                 "s.toml:2:8: mesh[0].file: absent.obj: there is no such file"},
+                 "2:8: mesh[0].file: absent.obj: there is no such file"},
         BadScene{"[[mesh]]\nfile = \"hand.fbx\"",
-                 "s.toml:2:8: mesh[0].file: hand.fbx: found the extension '.fbx'"}));
+                 "2:8: mesh[0].file: hand.fbx: found the extension '.fbx'"}));
 
 constexpr std::string_view ball = "[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n";
 
@@ -214,59 +211,54 @@ class SceneTomlRefusesBesideABall : public testing::TestWithParam<BadScene> {};
 TEST_P(SceneTomlRefusesBesideABall, WithPlaceAndWhatWasExpected) {
   const std::string text = std::string(ball) + GetParam().text;
   EXPECT_THAT(io_error_of([&] { parse_scene_toml(text, "s.toml"); }),
-              StartsWith(GetParam().message));
+              StartsWith(std::string("s.toml:") + GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Textures, SceneTomlRefusesBesideABall,
     testing::Values(
         BadScene{"turn_centre_m = [0, 0, 1]",
-                 "s.toml:4:17: sphere[0].turn_centre_m: is only valid with turn_deg_per_s"},
-        BadScene{"velocity_m_per_s = [1, 2]",
-                 "s.toml:4:20: sphere[0].velocity_m_per_s: found 2 numbers; expected a list of"},
-        BadScene{
-            "velocity = [1, 2, 3]",
-            "s.toml:4:1: unknown key sphere[0].velocity; expected centre_m, radius_m, texture"},
+                 "4:17: sphere[0].turn_centre_m: is only valid with turn_deg_per_s"},
+        BadScene{"velocity = [1, 2, 3]",
+                 "4:1: unknown key sphere[0].velocity; expected centre_m, radius_m, texture"},
         BadScene{"albedo = -0.1",
-                 "s.toml:4:10: sphere[0].albedo: found -0.1; expected a number in [0, 1]"},
-        BadScene{"albedo = 1.5", "s.toml:4:10: sphere[0].albedo: found 1.5"},
+                 "4:10: sphere[0].albedo: found -0.1; expected a number in [0, 1]"},
         BadScene{"albedo = 0.5\ntexture = { pattern = \"uniform\" }",
-                 "s.toml:4:10: sphere[0].albedo: is only valid with no texture"},
+                 "4:10: sphere[0].albedo: is only valid with no texture"},
         BadScene{"texture = { pattern = \"cheker\" }",
-                 "s.toml:4:23: sphere[0].texture.pattern: found \"cheker\"; expected one of "
-                 "\"uniform\", \"checker\", \"stripes\"; did you mean \"checker\"?"},
+                 "4:23: sphere[0].texture.pattern: found \"cheker\"; expected one of \"uniform\", "
+                 "\"checker\", \"stripes\"; did you mean \"checker\"?"},
         BadScene{"texture = { pattern = \"stripes\" }",
-                 "s.toml:4:11: found no sphere[0].texture.other_albedo"},
+                 "4:11: found no sphere[0].texture.other_albedo"},
         BadScene{"texture = { pattern = \"stripes\", other_albedo = -1 }",
-                 "s.toml:4:49: sphere[0].texture.other_albedo: found -1"},
+                 "4:49: sphere[0].texture.other_albedo: found -1"},
         BadScene{"texture = { pattern = \"stripes\", other_albedo = 1, period_m = 0 }",
-                 "s.toml:4:63: sphere[0].texture.period_m: found 0; expected a number > 0"},
+                 "4:63: sphere[0].texture.period_m: found 0; expected a number > 0"},
         BadScene{"texture = { image = \"absent.png\" }",
-                 "s.toml:4:21: sphere[0].texture.image: absent.png: there is no such file"},
+                 "4:21: sphere[0].texture.image: absent.png: there is no such file"},
         BadScene{"texture = { image = \"a.png\", pattern = \"checker\" }",
-                 "s.toml:4:40: sphere[0].texture.pattern: is only valid with"}));
+                 "4:40: sphere[0].texture.pattern: is only valid with"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Views, SceneTomlRefusesBesideABall,
     testing::Values(
-        BadScene{"[view]\nwidth_px = 0",
-                 "s.toml:5:12: view.width_px: found 0; expected 1 to 65536"},
-        BadScene{"[view]\nwidth_px = 60000\nheight_px = 60000", "s.toml:6:13: view.height_px: "},
+        BadScene{"[view]\nwidth_px = 0", "5:12: view.width_px: found 0; expected 1 to 65536"},
+        BadScene{"[view]\nwidth_px = 60000\nheight_px = 60000", "6:13: view.height_px: "},
         BadScene{"[view]\nhorizontal_angle_deg = 180",
-                 "s.toml:5:24: view.horizontal_angle_deg: found 180; expected more than 0 and"},
+                 "5:24: view.horizontal_angle_deg: found 180; expected more than 0 and"},
         BadScene{"[view]\nfx_px = 5\nhorizontal_angle_deg = 18",
-                 "s.toml:6:24: view.horizontal_angle_deg: is only valid with no fx_px"},
+                 "6:24: view.horizontal_angle_deg: is only valid with no fx_px"},
         BadScene{"[view]\nfx_px = 200\ndistortion = [-0.6, 0, 0, 0]",
-                 "s.toml:6:14: view.distortion: found [-0.6, 0, 0, 0]; must not fold back inside"},
+                 "6:14: view.distortion: found [-0.6, 0, 0, 0]; must not fold back inside"},
         BadScene{"[view]\ndistortion = [0, 0, 0, 0]",
-                 "s.toml:5:14: view.distortion: is only valid with fx_px"},
-        BadScene{"[view]\ncx_px = 5", "s.toml:5:9: view.cx_px: is only valid with fx_px"},
+                 "5:14: view.distortion: is only valid with fx_px"},
+        BadScene{"[view]\ncx_px = 5", "5:9: view.cx_px: is only valid with fx_px"},
         BadScene{"[camera]\nposition_m = [1, 2, 3]\nlook_at_m = [1, 2, 3]",
-                 "s.toml:6:13: camera.look_at_m: is the position of the camera"},
+                 "6:13: camera.look_at_m: is the position of the camera"},
         BadScene{"[camera]\nlook_at_m = [0, 1, 0]",
-                 "s.toml:5:13: camera.look_at_m: is directly above or below"},
+                 "5:13: camera.look_at_m: is directly above or below"},
         BadScene{"[camera]\nlook_at_m = [0, 1, 1]\nrotation_deg = [0, 0, 0]",
-                 "s.toml:6:16: camera.rotation_deg: is only valid with no look_at_m"}));
+                 "6:16: camera.rotation_deg: is only valid with no look_at_m"}));
 
 TEST(SceneToml, DamagedTexturesAreReportedWithTheirPixel) {
   const TemporaryDirectory directory;
@@ -281,7 +273,6 @@ TEST(SceneToml, DamagedTexturesAreReportedWithTheirPixel) {
 }
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 SceneResult scene() {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
@@ -314,6 +305,15 @@ void expect_same_image(const Image<float>& a, const Image<float>& b) {
     EXPECT_EQ(std::bit_cast<std::uint32_t>(a.pixels[i]), std::bit_cast<std::uint32_t>(b.pixels[i]));
 }
 
+void expect_same_error(const SceneError& a, const SceneError& b) {
+  EXPECT_EQ(a.mean_m, b.mean_m);
+  EXPECT_EQ(a.median_m, b.median_m);
+  EXPECT_EQ(a.outlier_rate, b.outlier_rate);
+  EXPECT_EQ(a.decoded_share, b.decoded_share);
+  EXPECT_EQ(a.pixels, b.pixels);
+  EXPECT_EQ(a.outlier_threshold_m, b.outlier_threshold_m);
+}
+
 TEST(SceneDirectory, ReadingUndoesWriting) {
   const TemporaryDirectory place;
   EXPECT_FALSE(holds_scene_result(place / "scene"));
@@ -338,53 +338,22 @@ TEST(SceneDirectory, ReadingUndoesWriting) {
       const SceneDecoding &a = read.captures[c].decodings[d], &b = written.captures[c].decodings[d];
       EXPECT_EQ(a.code, b.code);
       expect_same_image(a.depth_m, b.depth_m);
-      EXPECT_EQ(a.error.mean_m, b.error.mean_m);
-      EXPECT_EQ(a.error.median_m, b.error.median_m);
-      EXPECT_EQ(a.error.outlier_rate, b.error.outlier_rate);
-      EXPECT_EQ(a.error.decoded_share, b.error.decoded_share);
+      expect_same_error(a.error, b.error);
       ASSERT_EQ(a.filtered.has_value(), b.filtered.has_value());
       if (!a.filtered) continue;
       expect_same_image(a.filtered->depth_m, b.filtered->depth_m);
       expect_same_image(a.filtered->averaged, b.filtered->averaged);
-      EXPECT_EQ(a.filtered->error.mean_m, b.filtered->error.mean_m);
-      EXPECT_EQ(a.error.pixels, b.error.pixels);
-      EXPECT_EQ(a.error.outlier_threshold_m, b.error.outlier_threshold_m);
+      expect_same_error(a.filtered->error, b.filtered->error);
     }
   }
-}
-
-/// Does not synchronize the disk, unlike an atomic file.
-void overwrite(const fs::path& path, std::span<const std::byte> bytes) {
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
 }
 
 TEST(SceneDirectory, DamageIsReadOrRejectedWithTheFileName) {
   const TemporaryDirectory place;
   write_scene_result(place.path(), scene(), OutputPolicy::overwrite);
-  for (const char* name : {"scene.json", "albedo.npy", "low-hamiltonian-k4.npy"}) {
-    const FileBytes whole = read_binary_file(place / name);
-    int refused = 0;
-    const auto read = [&] {
-      try {
-        read_scene_result(place.path());
-      } catch (const IoError& error) {
-        ++refused;
-        EXPECT_THAT(error.what(), HasSubstr(place.path().string()));
-      }
-    };
-    for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 40) {
-      overwrite(place / name, std::span(whole).first(length));
-      EXPECT_NO_THROW(read()) << name << " cut after " << length;
-    }
-    EXPECT_GT(refused, 20) << name;
-    for (std::uint64_t i = 0; i < 200; ++i) {
-      RandomStream random(4, i);
-      overwrite(place / name, damaged(whole, random));
-      EXPECT_NO_THROW(read()) << name << " damaged, case " << i;
-    }
-    overwrite(place / name, whole);
-  }
+  for (const char* name : {"scene.json", "albedo.npy", "low-hamiltonian-k4.npy"})
+    expect_damage_of_file_read_or_refused(place.path(), place / name, 200,
+                                          [&] { read_scene_result(place.path()); });
   EXPECT_NO_THROW(read_scene_result(place.path()));
 }
 
