@@ -78,6 +78,19 @@ DelaySweep sweep_of(const Bench& bench, const ForwardModel& model) {
   return sweep;
 }
 
+/// A calibrated table of a code, and the model that it should equal.
+struct Calibrated {
+  Camera camera;
+  ForwardModel model;
+  CalibratedCorrelation found;
+
+  explicit Calibrated(const Bench& bench, const std::string& code = "hamiltonian-k3", int taps = 1)
+      : camera(camera_of(bench, taps)),
+        model(build_family(code, camera), camera),
+        found(calibrate_correlation(sweep_of(bench, model),
+                                    {.taps = taps, .range_m = camera.range_m()})) {}
+};
+
 /// Largest and mean square deviation from the truth in standard errors. Drifting light is known at
 /// the middle of the sweep.
 std::pair<double, double> distance(const CalibratedCorrelation& found, const ForwardModel& model) {
@@ -93,10 +106,7 @@ TEST(CorrelationCalibration, RecoversTheTableWithinFourStandardErrorsAtEverySamp
   constexpr int seeds = 6;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const Bench bench{.seed = seed};
-    const Camera camera = camera_of(bench);
-    const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
-    const CalibratedCorrelation found =
-        calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
+    const auto& [camera, model, found] = Calibrated(bench);
     EXPECT_EQ(found.table.samples(), bench.steps);
     EXPECT_EQ(found.noise_source, "pixels");
     EXPECT_NEAR(found.noise_rms, bench.noise, 0.1);
@@ -183,18 +193,13 @@ TEST(CorrelationCalibration, OfAMixerFindsItsSignedTable) {
 }
 
 TEST(CorrelationCalibration, RemovesDriftFoundByRepeatedDelays) {
-  const Bench bench{.frames = 60, .drift = 0.05};
-  const Camera camera = camera_of(bench);
-  const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
   const CalibratedCorrelation found =
-      calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
+      Calibrated({.frames = 60, .drift = 0.05}, "hamiltonian-k4").found;
   EXPECT_TRUE(found.drift_corrected);
   EXPECT_NEAR(found.light_drift.value, 0.05, 4 * found.light_drift.standard_error + 0.002);
   EXPECT_THAT(found.notes, Contains(HasSubstr("light changed by +5")));
   // Without repeated delays the drift is unknown.
-  const Bench once{.frames = 30};
-  const CalibratedCorrelation blind =
-      calibrate_correlation(sweep_of(once, model), {.range_m = camera.range_m()});
+  const CalibratedCorrelation blind = Calibrated({.frames = 30}, "hamiltonian-k4").found;
   EXPECT_FALSE(blind.drift_known);
   EXPECT_THAT(blind.notes, Contains(HasSubstr("measure the first delay again")));
 }
@@ -230,47 +235,31 @@ TEST(CorrelationCalibration, ExcludesDeadPixels) {
 }
 
 TEST(CorrelationCalibration, FindsTheImbalanceOfTaps) {
-  const Bench bench{.mismatch = 0.03};
-  const Camera camera = camera_of(bench, 2);
-  const ForwardModel model(build_family("sinusoid-k4", camera), camera);
-  const CalibratedCorrelation found =
-      calibrate_correlation(sweep_of(bench, model), {.taps = 2, .range_m = camera.range_m()});
+  const Calibrated calibrated({.mismatch = 0.03}, "sinusoid-k4", 2);
+  const CalibratedCorrelation& found = calibrated.found;
   ASSERT_EQ(found.tap_mismatch.size(), 4u);
   for (const Estimate& m : found.tap_mismatch) EXPECT_NEAR(m.value, 0.03, 4 * m.standard_error);
-  EXPECT_LT(distance(found, model).first, 4.5);
+  EXPECT_LT(distance(found, calibrated.model).first, 4.5);
 }
 
 TEST(CorrelationCalibration, AcceptsAnyStartOfTheSweepAndTablesOfMeans) {
-  const Bench bench{.side = 1, .frames = 90, .noise = 0.2, .first = 0.37};
-  const Camera camera = camera_of(bench);
-  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
-  const CalibratedCorrelation found =
-      calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
-  EXPECT_EQ(found.noise_source, "repeats");
-  EXPECT_TRUE(found.maps.empty());
-  EXPECT_LT(distance(found, model).first, 5.0);
-  const Bench once{.side = 1, .steps = 60, .frames = 60, .noise = 0.2};
-  const CalibratedCorrelation table =
-      calibrate_correlation(sweep_of(once, model), {.range_m = camera.range_m()});
-  EXPECT_EQ(table.noise_source, "high harmonics");
-  EXPECT_NEAR(table.noise_rms, 0.2, 0.08);
+  const Calibrated repeated(Bench{.side = 1, .frames = 90, .noise = 0.2, .first = 0.37});
+  EXPECT_EQ(repeated.found.noise_source, "repeats");
+  EXPECT_TRUE(repeated.found.maps.empty());
+  EXPECT_LT(distance(repeated.found, repeated.model).first, 5.0);
+  const Calibrated once(Bench{.side = 1, .steps = 60, .frames = 60, .noise = 0.2});
+  EXPECT_EQ(once.found.noise_source, "high harmonics");
+  EXPECT_NEAR(once.found.noise_rms, 0.2, 0.08);
 }
 
 TEST(CorrelationCalibration, RejectsLessThanAPeriod) {
-  const Camera camera = camera_of({});
-  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
-  const auto refusal = [&](const Bench& bench) -> std::string {
-    try {
-      calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "none";
+  const auto refuses = [&](int frames, const char* why) {
+    EXPECT_THAT([&] { Calibrated(Bench{.side = 2, .frames = frames}); },
+                testing::ThrowsMessage<std::invalid_argument>(HasSubstr(why)));
   };
-  EXPECT_THAT(refusal({.side = 2, .frames = 20}),
-              HasSubstr("from 0.6667 to 0.9667 periods are missing, 10 more steps"));
-  EXPECT_THAT(refusal({.side = 2, .frames = 5}), HasSubstr("at least 8 different"));
-  EXPECT_EQ(refusal({.side = 2, .frames = 30}), "none");
+  refuses(20, "from 0.6667 to 0.9667 periods are missing, 10 more steps");
+  refuses(5, "at least 8 different");
+  EXPECT_NO_THROW(Calibrated(Bench{.side = 2, .frames = 30}));
 }
 
 TEST(IdealCodeFit, FindsCodeDelayAndResponse) {

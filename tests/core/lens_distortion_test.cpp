@@ -29,24 +29,16 @@ std::vector<LensDistortion> lenses() {
           {fisheye, {-0.03, 0.01, -0.008, 0.001}}};
 }
 
-TEST(LensDistortion, UndistortingInvertsProjection) {
+TEST(LensDistortion, UndistortingInvertsProjectionAndReturnsThePointOnTheFirstFold) {
   for (const LensDistortion& lens : lenses())
     for (double x = -0.75; x <= 0.75; x += 0.125)
       for (double y = -0.5; y <= 0.5; y += 0.125) {
-        const auto ideal = lens.undistort({x, y});
-        ASSERT_TRUE(ideal) << lens.coefficients[0] << " at " << x << ", " << y;
+        const Vector2d ray(0.8 * x, 0.9 * y);
+        const auto ideal = lens.undistort({x, y}), back = lens.undistort(lens.distort(ray));
+        ASSERT_TRUE(ideal && back) << lens.coefficients[0] << " at " << x << ", " << y;
         // A millionth of a pixel for a focal length of 1000 pixels.
         EXPECT_LE((lens.distort(*ideal) - Vector2d(x, y)).norm(), 1e-9);
-      }
-}
-
-TEST(LensDistortion, DistortingAndUndistortingIsTheIdentityOnTheFirstFold) {
-  for (const LensDistortion& lens : lenses())
-    for (double x = -0.6; x <= 0.6; x += 0.15)
-      for (double y = -0.45; y <= 0.45; y += 0.15) {
-        const auto back = lens.undistort(lens.distort({x, y}));
-        ASSERT_TRUE(back) << lens.coefficients[0] << " at " << x << ", " << y;
-        EXPECT_LE((*back - Vector2d(x, y)).norm(), 1e-9);
+        EXPECT_LE((*back - ray).norm(), 1e-9);
       }
 }
 

@@ -74,12 +74,9 @@ TEST(TextNumbers, UseADecimalPointInEveryLocale) {
   ASSERT_STREQ(text, "1,5") << "what the C library writes";
   EXPECT_EQ(number_in("0.00123"), 0.00123);
   EXPECT_EQ(number_in("0,00123"), std::nullopt);
-}
-
-TEST(TextNumbers, MessagesAreTheSameInEveryLocale) {
-  const GermanLocale locale;
   EXPECT_EQ(broken("samples", 123456, "must be fewer").text(), "samples = 123456; must be fewer");
   EXPECT_EQ(broken("exposure_s", 0.25, "must be less").text(), "exposure_s = 0.25; must be less");
+  EXPECT_EQ(closed(0.01, 100).text(), "in [0.01, 100]");
 }
 
 TEST(TextNumbers, LettersAreAsciiLetters) {
@@ -97,7 +94,6 @@ TEST(UnitText, ConvertsNumbersToTheUnitOfAKey) {
         {"2m", "m", 2.0},
         {"5 mm", "m", 0.005},
         {"10 um", "m", 1e-5},
-        {"20 ms", "s", 0.02},
         {"100ns", "s", 100e-9},
         {"2m/s", unit_of_key("velocity_m_per_s"), 2.0},
         {"30 cm/s", unit_of_key("velocity_m_per_s"), 0.3},
@@ -190,11 +186,6 @@ TEST(Range, ContainsTheNumbersOfItsText) {
     for (const double value : each.outside) EXPECT_FALSE(each.range.contains(value)) << each.text;
   }
   EXPECT_EQ(at_least(1).text(true), ">= 1") << "integers are finite";
-}
-
-TEST(Range, HasTheSameTextInEveryLocale) {
-  const GermanLocale locale;
-  EXPECT_EQ(closed(0.01, 100).text(), "in [0.01, 100]");
 }
 
 enum class Fruit { apple, pear, plum };

@@ -35,15 +35,6 @@ TEST(RandomStream, DependsOnSeedItemAndTrialOnly) {
   EXPECT_NE(first({7, 3, 5}), first({7, (std::uint64_t{1} << 32) + 3, 5}));
 }
 
-TEST(RandomStream, MatchesThePublishedPhiloxVector) {
-  // From Random123's kat_vectors: philox4x32-10, zero counter and key.
-  RandomStream stream(0, 0, 0);
-  EXPECT_EQ(stream(), 0x6627e8d5u);
-  EXPECT_EQ(stream(), 0xe169c58du);
-  EXPECT_EQ(stream(), 0xbc57ac4cu);
-  EXPECT_EQ(stream(), 0x9b00dbd8u);
-}
-
 TEST(RandomStream, NormalHasTheMomentsOfANormal) {
   RandomStream stream(1, 0);
   RunningStatistics mean, square, fourth;
@@ -58,22 +49,20 @@ TEST(RandomStream, NormalHasTheMomentsOfANormal) {
   EXPECT_NEAR(fourth.mean(), 3.0, 4 * fourth.standard_error());
 }
 
-class PoissonMean : public testing::TestWithParam<double> {};
-
-TEST_P(PoissonMean, MeanEqualsVariance) {
-  RandomStream stream(2, 0);
-  RunningStatistics counts, squares;
-  for (int i = 0; i < 50000; ++i) {
-    const double x = stream.poisson(GetParam());
-    EXPECT_EQ(x, std::floor(x));
-    counts.add(x);
-    squares.add((x - GetParam()) * (x - GetParam()));
+TEST(RandomStream, PoissonCountsAreIntegersWithMeanEqualToVariance) {
+  for (const double mean : {0.3, 5.0, 40.0, 3e4, 9e8, 5e9}) {
+    RandomStream stream(2, 0);
+    RunningStatistics counts, squares;
+    for (int i = 0; i < 50000; ++i) {
+      const double x = stream.poisson(mean);
+      EXPECT_EQ(x, std::floor(x));
+      counts.add(x);
+      squares.add((x - mean) * (x - mean));
+    }
+    EXPECT_NEAR(counts.mean(), mean, 4 * counts.standard_error()) << mean;
+    EXPECT_NEAR(squares.mean(), mean, 4 * squares.standard_error()) << mean;
   }
-  EXPECT_NEAR(counts.mean(), GetParam(), 4 * counts.standard_error());
-  EXPECT_NEAR(squares.mean(), GetParam(), 4 * squares.standard_error());
 }
-
-INSTANTIATE_TEST_SUITE_P(SmallToHuge, PoissonMean, testing::Values(0.3, 5.0, 40.0, 3e4, 9e8, 5e9));
 
 TEST(RandomStream, PoissonOfMeanZeroIsZero) {
   RandomStream stream(2, 0);
@@ -108,20 +97,6 @@ TEST(Parallel, UsesMoreThreadsThanCoresOnRequest) {
     all_there.wait_for(lock, std::chrono::seconds(20), [&] { return there == threads; });
     EXPECT_EQ(there, threads);
   });
-}
-
-TEST(Statistics, GeometricMeanPropagatesRelativeErrors) {
-  const Estimate estimates[] = {{1.0, 0.1}, {100.0, 10.0}};
-  const Estimate mean = geometric_mean_of(estimates);
-  EXPECT_NEAR(mean.value, 10.0, 1e-12);
-  EXPECT_NEAR(mean.standard_error, 10.0 * std::sqrt(0.02) / 2, 1e-12);
-}
-
-TEST(Statistics, GeometricMeanOfNaNIsNaN) {
-  const Estimate estimates[] = {{1.0, 0.1}, {std::nan(""), 0.0}};
-  EXPECT_TRUE(std::isnan(geometric_mean_of(estimates).value));
-  const Estimate with_zero[] = {{1.0, 0.1}, {0.0, 0.0}};
-  EXPECT_EQ(geometric_mean_of(with_zero).value, 0.0);
 }
 
 struct Words {

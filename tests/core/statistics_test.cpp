@@ -25,6 +25,8 @@ TEST(MeanOf, AveragesValuesAndPropagatesErrors) {
   EXPECT_DOUBLE_EQ(geometric_mean_of(estimates).standard_error,
                    std::sqrt(3.0) * std::hypot(0.3, 0.4 / 3) / 2);
   EXPECT_EQ(geometric_mean_of(std::vector<Estimate>{{1.0, 0.1}, {0.0, 0.0}}).value, 0.0);
+  const std::vector<Estimate> unknown{{1.0, 0.1}, {std::nan(""), 0.0}};
+  EXPECT_TRUE(std::isnan(geometric_mean_of(unknown).value));
 }
 
 TEST(MedianOf, IsTheMiddle) {
@@ -58,10 +60,12 @@ TEST(RunningStatistics, AgreesWithTwoPassesFarFromZero) {
   EXPECT_NEAR(statistics.standard_error(), std::sqrt(variance / 100), 1e-11);
 }
 
-TEST(Fnv1a, GivesThePublishedValues) {
+// Test vectors of draft-eastlake-fnv.
+TEST(Fnv1a, AgreesWithThePublishedVectors) {
   EXPECT_EQ(fnv1a_64(""), 0xcbf29ce484222325ull);
-  EXPECT_EQ(fnv1a_64("a"), 0xaf63dc4c8601ec8cull);
   EXPECT_EQ(fnv1a_64("foobar"), 0x85944171f73967e8ull);
+  EXPECT_EQ(fnv1a_128_hex(""), "6c62272e07bb014262b821756295c58d");
+  EXPECT_EQ(fnv1a_128_hex("foobar"), "343e1662793c64bf6f0d3597ba446f18");
 }
 
 TEST(ChiSquare, MatchesPublishedQuantiles) {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "table_top_image.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {
@@ -132,13 +131,6 @@ TEST(BuiltInScenes, HandHasFiveFingersAboutHalfAMetreAway) {
   EXPECT_LT(farthest_m, 0.56);
   EXPECT_GT(returns, 161 * 121 / 8);
   EXPECT_LT(returns, 161 * 121 / 2) << "no background";
-}
-
-TEST(BuiltInScenes, TableTopIsTheDemoScene) {
-  const Seen seen = see("table-top");
-  const SceneImage demo = table_top_image(161, 121);
-  EXPECT_EQ(seen.scene.image.albedo.pixels, demo.albedo.pixels);
-  EXPECT_EQ(seen.scene.image.cosine.pixels, demo.cosine.pixels);
 }
 
 }  // namespace

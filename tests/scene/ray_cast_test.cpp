@@ -12,7 +12,6 @@
 #include <numbers>
 #include <utility>
 
-#include "core/shared/random.hpp"
 #include "generated_shapes.hpp"
 #include "table_top_image.hpp"
 #include "tofsmith/scene/shapes.hpp"
@@ -22,13 +21,6 @@ namespace tofsmith {
 namespace {
 
 using Pattern = Texture::Pattern;
-
-Ray random_ray(std::uint64_t item) {
-  RandomStream random(7, item);
-  const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
-  const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
-  return {3.0 * origin, direction.normalized()};
-}
 
 TEST(Plane, DepthIsTheDistanceOverTheCosine) {
   const PinholeView view = PinholeView::centred(31, 21, 1.2);
@@ -56,7 +48,7 @@ TEST(Sphere, HitsAreOnTheSurfaceAndNearest) {
   const Sphere sphere{.centre = {0.3, -0.2, 0.5}, .radius_m = 1.7};
   int hits = 0;
   for (std::uint64_t i = 0; i < 400; ++i) {
-    const Ray ray = random_ray(i);
+    const Ray ray = ray_about_origin(i);
     const auto hit = intersect(sphere, ray);
     const double along = (sphere.centre - ray.origin).dot(ray.direction);
     const double aside = (ray.origin + along * ray.direction - sphere.centre).norm();
@@ -70,12 +62,6 @@ TEST(Sphere, HitsAreOnTheSurfaceAndNearest) {
     EXPECT_EQ(hit->normal.dot(ray.direction) < 0.0, outside) << "the near side, seen from outside";
   }
   EXPECT_GT(hits, 30);
-}
-
-TEST(Sphere, DepthOnTheAxisIsCentreMinusRadius) {
-  const auto hit = intersect(Sphere{.centre = {0, 0, 4}, .radius_m = 0.5}, {{0, 0, 0}, {0, 0, 1}});
-  ASSERT_TRUE(hit);
-  EXPECT_DOUBLE_EQ(hit->distance_m, 3.5);
 }
 
 /// Reference: the nearest of six rectangular faces.
@@ -105,7 +91,7 @@ TEST(Box, EqualsTheNearestOfItsSixFaces) {
     const Box box{.centre = {0.2, 0.1, -0.4}, .size_m = {2.0, 3.0, 1.0}, .rotation = rotation};
     int hits = 0;
     for (std::uint64_t i = 0; i < 600; ++i) {
-      const Ray ray = random_ray(i);
+      const Ray ray = ray_about_origin(i, 2.0);
       const double expected = box_distance_by_faces(box, ray);
       const auto hit = intersect(box, ray);
       ASSERT_EQ(hit.has_value(), std::isfinite(expected)) << i;
@@ -273,13 +259,6 @@ TEST(RayCaster, APlaneBeyondTheRangeOfFloatsReturnsNothing) {
   EXPECT_EQ(seen.shape.pixels, std::vector<std::int32_t>(16, -1));
 }
 
-Ray random_ray_nearby(std::uint64_t item) {
-  RandomStream random(17, item);
-  const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
-  const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
-  return {1.5 * origin, direction.normalized()};
-}
-
 const Capsule oblique{.start = {0.4, -0.9, 0.2}, .end = {-0.5, 1.1, 0.8}, .radius_m = 0.7};
 
 double distance_to_segment(const Capsule& capsule, const Eigen::Vector3d& point) {
@@ -291,7 +270,7 @@ double distance_to_segment(const Capsule& capsule, const Eigen::Vector3d& point)
 TEST(Capsule, HitsAreOneRadiusFromTheSegmentAndNearest) {
   int outside_hits = 0, inside_hits = 0;
   for (std::uint64_t i = 0; i < 1500; ++i) {
-    const Ray ray = random_ray_nearby(i);
+    const Ray ray = ray_about_origin(i, 1.5);
     const auto hit = intersect(oblique, ray);
     const bool inside = distance_to_segment(oblique, ray.origin) < oblique.radius_m;
     // The signed distance to the surface changes sign at a hit: search in small steps.
@@ -316,7 +295,7 @@ TEST(Capsule, OfZeroLengthIsASphere) {
   const Sphere sphere{.centre = point.start, .radius_m = point.radius_m};
   int hits = 0;
   for (std::uint64_t i = 0; i < 500; ++i) {
-    const Ray ray = random_ray_nearby(i);
+    const Ray ray = ray_about_origin(i, 1.5);
     const auto one = intersect(point, ray);
     const auto other = intersect(sphere, ray);
     ASSERT_EQ(one.has_value(), other.has_value()) << i;
@@ -333,9 +312,6 @@ TEST(Capsule, DepthOnTheAxisIsTheNearEndMinusTheRadius) {
   const auto along = intersect(pole, {{0, 0, 0}, {0, 0, 1}});
   ASSERT_TRUE(along);
   EXPECT_DOUBLE_EQ(along->distance_m, 2.5);
-  const auto across = intersect(pole, {{2, 0, 4}, {-1, 0, 0}});
-  ASSERT_TRUE(across);
-  EXPECT_DOUBLE_EQ(across->distance_m, 1.5);
 }
 
 TEST(Capsule, RejectsARadiusOfZero) {

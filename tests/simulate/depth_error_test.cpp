@@ -103,12 +103,8 @@ struct ReferenceRow {
 // affects error and bound equally, and only their ratio is accurate.
 constexpr ReferenceRow reference_rows[] = {
     {"sinusoid-k3", 1e4, 1e4, 155.02, 0.83, 155.07},
-    {"sinusoid-k3", 1e5, 1e5, 42.072, 0.22, 42.245},
     {"sinusoid-k4", 1e4, 1e2, 133.65, 0.72, 132.66},
-    {"sinusoid-k5", 31622.8, 1e4, 68.923, 0.37, 68.018},
     {"square-k4", 31622.8, 1e3, 38.807, 0.21, 37.63},
-    {"square-k4", 1e5, 1e5, 27.048, 0.15, 26.731},
-    {"hamiltonian-k3", 1e4, 1e2, 50.662, 0.25, 50.754},
     {"hamiltonian-k3", 1e5, 1e5, 17.234, 0.093, 17.28},
     {"hamiltonian-k4", 31622.8, 1e5, 25.269, 0.14, 24.849},
     {"hamiltonian-k5", 31622.8, 1e5, 11.228, 0.063, 10.785},
@@ -131,22 +127,6 @@ TEST(Evaluate, AgreesWithTheReferenceImplementation) {
                 tolerance / row.cramer_rao_mm)
         << row.code;
   }
-}
-
-TEST(Evaluate, StratifiedDepthsAreUnbiasedWithCorrectStandardErrors) {
-  const Camera camera = camera_at("paper-30x", {3e3}, {1e3});
-  const CodeSet code = build_family("hamiltonian-k3", camera);
-  const Estimate truth = evaluate(code, camera, {.trials = 100000}).points[0].linear_mde_m;
-  RunningStatistics values, stated_variance;
-  for (std::uint64_t seed = 100; seed < 260; ++seed) {
-    const Estimate e = evaluate(code, camera, {.trials = 200, .seed = seed}).points[0].linear_mde_m;
-    values.add(e.value);
-    stated_variance.add(e.standard_error * e.standard_error);
-  }
-  EXPECT_NEAR(values.mean(), truth.value,
-              4 * std::hypot(values.standard_error(), truth.standard_error));
-  // The relative standard error of a variance of 160 values is about 1/9.
-  EXPECT_NEAR(stated_variance.mean() / values.variance(), 1.0, 0.45);
 }
 
 TEST(Evaluate, MeansAreTakenOverThePoints) {

@@ -72,16 +72,6 @@ TEST(Interference, OfASinusoidIsTheErrorOfASecondReturnWithRandomPhase) {
               0.02 * camera.range_m() / (2.0 * std::numbers::pi * std::sqrt(2.0)), 1e-6);
 }
 
-TEST(Interference, LightHasTheValuesOfTheForwardModel) {
-  const Camera camera = lit_camera({});
-  const CodeSet code = build_family("hamiltonian-k4", camera);
-  const InterferenceLight other(code, camera);
-  ASSERT_EQ(other.starts(), 1) << "the light is the same in all exposures";
-  const Eigen::MatrixXd expected =
-      ForwardModel(code, camera).tap_correlation_table(InterferenceLight::phases);
-  EXPECT_LT((other.whole(0) - expected).cwiseAbs().maxCoeff(), 1e-3);
-}
-
 TEST(Interference, TrialsAgreeWithTheClosedForm) {
   const std::vector<OperatingInterference> all = {
       {.signal_ratio = 0.002},

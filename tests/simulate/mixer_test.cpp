@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "captured_moments.hpp"
 #include "core/shared/random.hpp"
 #include "simulate/pixel_capture.hpp"
 #include "tofsmith/core/error.hpp"
@@ -51,6 +52,14 @@ SceneImage random_depths(int height, int width, double range_m) {
   for (float& depth_m : scene.depth_m.pixels)
     depth_m = static_cast<float>(range_m * random.uniform());
   return scene;
+}
+
+void expect_depths(const DepthImage& image, const SceneImage& scene, const Camera& camera,
+                   double tolerance_m) {
+  for (std::size_t i = 0; i < scene.depth_m.size(); ++i)
+    ASSERT_LT(std::abs(circular_difference(image.depth_m.pixels[i], scene.depth_m.pixels[i],
+                                           camera.range_m())),
+              tolerance_m);
 }
 
 TEST(Mixer, ABinaryWeightMeasuresLikeTwoBuckets) {
@@ -174,31 +183,13 @@ TEST(Mixer, CapturesHaveTheMeanAndVarianceOfTheModel) {
   camera.light.peak_factor = 60.0;
   camera.light.impulse_response = camera.sensor.impulse_response = {};
   camera.sensor.dark_current_e_per_s = 100.0;
-  for (const NoiseModel noise : {NoiseModel::poisson, NoiseModel::gaussian})
-    for (const bool switches : {false, true}) {
-      camera.sensor.noise = noise;
-      const CodeSet code =
-          switches ? build_family("hamiltonian-k4", camera) : analog_code(camera.samples, 0.1);
-      // Almost no ambient light, so that the mean weight of all light may be small.
-      const double S = 2e3, A = 10.0, depth_bin = 47.0;
-      SceneImage scene(100, 100);
-      for (float& depth_m : scene.depth_m.pixels)
-        depth_m = static_cast<float>(depth_bin * camera.bin_m());
-      const RawFrames raw = capture(scene, code, camera,
-                                    {.signal_e_per_s = S, .ambient_e_per_s = A, .falloff = false});
-      ASSERT_EQ(raw.measurements, 4);
-      const ForwardModel model(code, camera);
-      const Return light{S, depth_bin};
-      const Eigen::VectorXd mean = model.expected_electrons({&light, 1}, A);
-      const Eigen::VectorXd variance = model.variance_e2({&light, 1}, A);
-      for (int e = 0; e < 4; ++e) {
-        RunningStatistics seen;
-        for (std::size_t i = static_cast<std::size_t>(e); i < raw.values.size(); i += 4)
-          seen.add(raw.values[i]);
-        EXPECT_NEAR(seen.mean(), mean[e], 4 * seen.standard_error());
-        EXPECT_NEAR(seen.variance() / variance[e], 1.0, 4 * std::sqrt(2.0 / 1e4));
-      }
-    }
+  for (const NoiseModel noise : {NoiseModel::poisson, NoiseModel::gaussian}) {
+    camera.sensor.noise = noise;
+    // Almost no ambient light, so that the mean weight of all light may be small.
+    for (const CodeSet& code :
+         {build_family("hamiltonian-k4", camera), analog_code(camera.samples, 0.1)})
+      expect_moments_of_the_model(code, camera, {1250.0, 3.0}, 47.0);
+  }
 }
 
 TEST(Mixer, PoissonElectronsOfAnyWeightHaveTheCorrectMeanAndVariance) {
@@ -254,10 +245,7 @@ TEST(Mixer, CapturedDepthsAreDecodedInAnyAmbientLight) {
     const DecodingTable table = make_decoding_table(ForwardModel(code, camera), camera);
     for (const DepthImage& image :
          {Decoder(table).decode(raw), LikelihoodDecoder(table).decode(raw)})
-      for (std::size_t i = 0; i < scene.depth_m.size(); ++i)
-        ASSERT_LT(std::abs(circular_difference(image.depth_m.pixels[i], scene.depth_m.pixels[i],
-                                               camera.range_m())),
-                  0.02);
+      expect_depths(image, scene, camera, 0.02);
   }
 }
 
@@ -286,12 +274,8 @@ TEST(Mixer, ClipsAndQuantizesBothSigns) {
     const CodeSet code = build_family("hamiltonian-k4", camera);
     const SceneImage scene = random_depths(10, 10, camera.range_m());
     const RawFrames raw = capture(scene, code, camera, {.falloff = false});
-    const DepthImage image =
-        Decoder(make_decoding_table(ForwardModel(code, camera), camera)).decode(raw);
-    for (std::size_t i = 0; i < scene.depth_m.size(); ++i)
-      ASSERT_LT(std::abs(circular_difference(image.depth_m.pixels[i], scene.depth_m.pixels[i],
-                                             camera.range_m())),
-                0.3);
+    const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+    expect_depths(decoder.decode(raw), scene, camera, 0.3);
     // Trials clip like captures: coarse quantization increases the error.
     camera.operating.signal_e_per_s = {1e5};
     camera.operating.ambient_e_per_s = {1e3};
@@ -371,27 +355,6 @@ Camera two_bucket_camera(int samples = 240) {
   return camera;
 }
 
-TEST(TwoBuckets, CapturedPairsContainAllLightAndTwoReadNoises) {
-  for (const NoiseModel noise : {NoiseModel::poisson, NoiseModel::gaussian}) {
-    Camera camera = two_bucket_camera();
-    camera.sensor.noise = noise;
-    camera.sensor.modulation_contrast = 0.8;
-    camera.sensor.dark_current_e_per_s = 500.0;
-    const CodeSet code = build_family("hamiltonian-k4", camera);
-    const double S = 2e4, A = 5e3, T = camera.exposure_s.total_s / 4;
-    const RawFrames raw = capture(random_depths(40, 50, camera.range_m()), code, camera,
-                                  {.signal_e_per_s = S, .ambient_e_per_s = A, .falloff = false});
-    ASSERT_EQ(raw.measurements, 8);
-    RunningStatistics sums;
-    for (std::size_t i = 0; i < raw.values.size(); i += 2)
-      sums.add(static_cast<double>(raw.values[i]) + raw.values[i + 1]);
-    const double all_e = T * (S + A + 2 * 500.0), variance_e2 = all_e + 2 * 400.0;
-    EXPECT_NEAR(sums.mean(), all_e, 4 * sums.standard_error());
-    const double count = static_cast<double>(sums.count());
-    EXPECT_NEAR(sums.variance() / variance_e2, 1.0, 4 * std::sqrt(2 / count));
-  }
-}
-
 struct TwoBucketCode {
   const char* name;
   int samples;
@@ -407,6 +370,7 @@ constexpr TwoBucketCode two_bucket_codes[] = {
 TEST(TwoBuckets, CapturedDepthsAreDecoded) {
   for (const TwoBucketCode& c : two_bucket_codes)
     for (const Readout readout : {Readout::separate, Readout::difference}) {
+      SCOPED_TRACE(c.name);
       Camera camera = two_bucket_camera(c.samples);
       camera.sensor.readout = readout;
       camera.exposure_s.total_s = 3000.0;  // almost no noise
@@ -414,12 +378,7 @@ TEST(TwoBuckets, CapturedDepthsAreDecoded) {
       const SceneImage scene = random_depths(20, 30, camera.range_m());
       const RawFrames raw = capture(scene, code, camera, {.falloff = false});
       const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
-      const DepthImage image = decoder.decode(raw);
-      for (std::size_t i = 0; i < scene.depth_m.size(); ++i)
-        ASSERT_LT(std::abs(circular_difference(image.depth_m.pixels[i], scene.depth_m.pixels[i],
-                                               camera.range_m())),
-                  0.02)
-            << c.name;
+      expect_depths(decoder.decode(raw), scene, camera, 0.02);
     }
 }
 

@@ -14,11 +14,13 @@ namespace tofsmith {
 
 namespace {
 
+constexpr float nan_m = std::numeric_limits<float>::quiet_NaN();
+
 SceneResult small_scene() {
   SceneResult scene{.name = "ramp", .truth = SceneImage(6, 8)};
   for (std::size_t i = 0; i < scene.truth.depth_m.size(); ++i)
     scene.truth.depth_m.pixels[i] = 1.0f + 0.1f * static_cast<float>(i);
-  scene.truth.depth_m.pixels[5] = std::numeric_limits<float>::quiet_NaN();
+  scene.truth.depth_m.pixels[5] = nan_m;
   return scene;
 }
 
@@ -85,11 +87,9 @@ TEST(CaptureAndDecode, StopsOnRequest) {
 TEST(MedianDepth, IgnoresPixelsWithoutReturn) {
   SceneImage scene(1, 3);
   EXPECT_EQ(median_depth_m(scene), 1.0);
-  scene.depth_m.pixels = {2.0f, std::numeric_limits<float>::quiet_NaN(), 3.0f};
+  scene.depth_m.pixels = {2.0f, nan_m, 3.0f};
   EXPECT_EQ(median_depth_m(scene), 2.5);
 }
-
-constexpr float nan_m = std::numeric_limits<float>::quiet_NaN();
 
 SceneImage scene_of(std::vector<float> depths_m) {
   SceneImage scene(1, static_cast<int>(depths_m.size()));

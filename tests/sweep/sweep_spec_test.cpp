@@ -66,41 +66,38 @@ TEST(SweepSpec, RangesGiveTheSameValuesInEveryLocale) {
               ElementsAre("0.1", "0.2", "0.3"));
 }
 
-TEST(SweepSpec, AFileHasOneValuePerLine) {
-  const TemporaryDirectory directory;
-  std::ofstream(directory / "peaks.txt") << "# peaks\n 5\n\n7.5 \r\n";
+/// Returns a sweep whose axis is the file peaks.txt with this content.
+SweepSpec with_file(const TemporaryDirectory& directory, const std::string& content) {
+  std::ofstream(directory / "peaks.txt") << content;
   std::ofstream(directory / "s.toml")
       << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"peaks.txt\"\n";
-  const SweepSpec spec = read_sweep_toml(directory / "s.toml");
+  return read_sweep_toml(directory / "s.toml");
+}
+
+TEST(SweepSpec, AFileHasOneValuePerLine) {
+  const TemporaryDirectory directory;
+  const SweepSpec spec = with_file(directory, "# peaks\n 5\n\n7.5 \r\n");
   EXPECT_THAT(texts(spec.axes.at(0)), ElementsAre("5", "7.5"));
   EXPECT_EQ(spec.axes[0].values[1].place, (directory / "peaks.txt").string() + ":4:1");
 }
 
 TEST(SweepSpec, AFileOfNumbersIsIndependentOfTheDialect) {
   const TemporaryDirectory directory;
-  std::ofstream(directory / "s.toml")
-      << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"peaks.txt\"\n";
   for (const char* text : {"5.5\n7\n",
                            "\xef\xbb\xbf"
                            "5,5\r\n7\r\n",
                            "5.5,\n7,\n", "\"5,5\";\n\"7\";\n", "peak_factor\n+5.5\n7\n",
-                           "light.peak_factor\n5.5\n7\n"}) {
-    std::ofstream(directory / "peaks.txt") << text;
-    const SweepSpec spec = read_sweep_toml(directory / "s.toml");
-    EXPECT_THAT(texts(spec.axes.at(0)), ElementsAre("5.5", "7")) << text;
-  }
-  std::ofstream(directory / "peaks.txt") << "5\n9.91E+37\n";
-  EXPECT_THAT(io_error_of([&] { read_sweep_toml(directory / "s.toml"); }),
+                           "light.peak_factor\n5.5\n7\n"})
+    EXPECT_THAT(texts(with_file(directory, text).axes.at(0)), ElementsAre("5.5", "7")) << text;
+  EXPECT_THAT(io_error_of([&] { with_file(directory, "5\n9.91E+37\n"); }),
               testing::HasSubstr("peaks.txt:2:1: found 9.91E+37"));
 }
 
 TEST(SweepSpec, ErrorsDoNotQuoteOtherFiles) {
   const TemporaryDirectory directory;
-  std::ofstream(directory / "passwd") << "root:x:0:0:root:/root:/bin/bash\n";
-  std::ofstream(directory / "s.toml")
-      << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"passwd\"\n";
-  const std::string message = io_error_of([&] { read_sweep_toml(directory / "s.toml"); });
-  EXPECT_THAT(message, testing::HasSubstr("passwd:1:1: found a line that is not a value"));
+  const std::string message =
+      io_error_of([&] { with_file(directory, "root:x:0:0:root:/root:/bin/bash\n"); });
+  EXPECT_THAT(message, testing::HasSubstr("peaks.txt:1:1: found a line that is not a value"));
   EXPECT_THAT(message, testing::Not(testing::HasSubstr("bash")));
 }
 
