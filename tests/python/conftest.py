@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import os
+import subprocess
 import sys
 
 import matplotlib
@@ -9,6 +10,14 @@ import pytest
 
 sys.dont_write_bytecode = True
 matplotlib.use("Agg")
+
+
+def run(cli, *arguments, directory=None):
+    """Runs the command line and returns its standard output."""
+    done = subprocess.run([cli, *map(str, arguments)], cwd=directory, capture_output=True,
+                          text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 def page_without_command(path):

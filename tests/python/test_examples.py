@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -44,11 +45,13 @@ def test_tasks_run_and_are_short(task, tmp_path):
 
 
 def snippets():
-    for page in ("README.md", "docs/python.md", "docs/calibration.md"):
+    for page in ("README.md", "docs/python.md", "docs/calibration.md", "docs/torch.md"):
         text = (folder.parent / page).read_text()
         blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
         assert blocks, page
-        yield pytest.param("".join(blocks), id=page)
+        needs_torch = pytest.mark.skipif(page == "docs/torch.md" and not find_spec("torch"),
+                                         reason="PyTorch is not installed")
+        yield pytest.param("".join(blocks), id=page, marks=needs_torch)
 
 
 @pytest.mark.parametrize("snippet", snippets())

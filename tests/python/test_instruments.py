@@ -265,11 +265,9 @@ def answer(text):
 ATTACKS = {
     "silence": lambda connection: time.sleep(5),
     "closes": lambda connection: None,
-    "reads nothing": lambda connection: time.sleep(5),
     "line without end": repeat(b"x" * 65536),
     "lines without end": repeat(b"0,No error\n" * 1000),
     "line ends without end": repeat(b"\n" * 65536),
-    "zeros without end": repeat(bytes(65536)),
     "trickling bytes": repeat(b"x", 0.002),
     "trickling line ends": repeat(b"\n", 0.002),
     "garbage": answer(bytes(range(256)) + b"\n"),

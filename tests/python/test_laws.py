@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The package gives the same results as the command line and as formulas."""
 
-import json
 import pickle
 import subprocess
 import sys
@@ -10,13 +9,9 @@ import sys
 import numpy as np
 import pytest
 
+import decode_bins
 import tofsmith as ts
-
-
-def run(cli, *arguments):
-    done = subprocess.run([cli, *map(str, arguments)], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+from conftest import run
 
 
 def test_cameras_are_equal_from_names_files_and_keywords(tmp_path):
@@ -169,23 +164,37 @@ def test_layouts_and_types_do_not_change_depth(camera):
     for name, array, layout in layouts(raw):
         depth = decoder.decode(array, layout=layout, planes=["depth_m"]).depth_m
         assert np.array_equal(depth, truth.depth_m, equal_nan=True), name
-    counts = np.round(np.clip(raw, 0, 65535))
-    for kind in (np.uint16, np.int16, np.int32, np.uint64):
-        small = np.clip(counts, 0, 32767)
-        assert np.array_equal(decoder.decode(small.astype(kind)).depth_m,
-                              decoder.decode(small.astype(np.float32)).depth_m, equal_nan=True)
     stack = np.stack([raw, raw[::-1]])
     both = decoder.decode(stack)
     assert np.array_equal(both.depth_m[1], truth.depth_m[::-1], equal_nan=True)
     out = ts.DepthImage(depth_m=np.zeros((20, 30), np.float32), bin=np.zeros((20, 30), np.int32))
     assert decoder.decode(raw, out=out) is out
     assert np.array_equal(out.depth_m, truth.depth_m, equal_nan=True) and out.bin.max() < 120
-    raw[0, 0, 0] = np.nan
-    assert decoder.decode(raw).status[0, 0] == ts.PixelStatus.invalid
     offset = np.full((20, 30), 0.25, np.float32)
     moved = decoder.decode(raw, delay_offset_m=offset).depth_m
     difference = (truth.depth_m - moved - 0.25 + 1) % camera.range_m - 1
     assert np.nanmax(np.abs(difference)) < 1e-4
+
+
+@pytest.mark.parametrize("item", range(12))
+def test_bins_of_random_codes_equal_brute_force(item):
+    """A few of the random codes that scripts/differential.sh tests for hours."""
+    assert decode_bins.check_item(seed=7, item=item, pixels=4000) in (0, 4000)
+
+
+def test_a_wrong_bin_is_detected():
+    rng = np.random.default_rng(1)
+    table = rng.normal(size=(50, 4))
+    raw = decode_bins.random_frame(rng, table, 300)
+    raw[~np.isfinite(raw)] = 0
+    centred = raw[0] - raw[0].mean(axis=1, keepdims=True)
+    unit = table - table.mean(axis=1, keepdims=True)
+    unit /= np.linalg.norm(unit, axis=1, keepdims=True)
+    best = (centred.astype(float) @ unit.T).argmax(axis=1)[None]
+    assert decode_bins.wrong_bins(table, raw, best).size == 0
+    best[0, 17] = (best[0, 17] + 1) % 50
+    best[0, 40] = -1
+    assert list(decode_bins.wrong_bins(table, raw, best)) == [17, 40]
 
 
 @pytest.mark.parametrize("method, code", [("ml", "hamiltonian-k4"), ("unwrap", "multifrequency-k5"),

@@ -8,6 +8,7 @@ import pytest
 import tofsmith as ts
 
 PINHOLE = {"fx_px": 220.0, "fy_px": 222.0, "cx_px": 158.0, "cy_px": 121.5}
+MATRIX = np.array([[220.0, 0, 158.0], [0, 222.0, 121.5], [0, 0, 1]])  # of PINHOLE, for OpenCV
 LENSES = [
     ("opencv", [-0.28, 0.07, 1e-3, -5e-4]),
     ("opencv", [0.12, -0.2, -1e-3, 2e-3, 0.05]),
@@ -25,10 +26,8 @@ def lens_of(model, coefficients):
 def test_opencv_projects_the_ray_of_a_pixel_to_that_pixel(model, coefficients):
     cv2 = pytest.importorskip("cv2", reason="OpenCV, the oracle, is missing (python3-opencv)")
     points = ts.points_m(np.ones((240, 320)), lens_of(model, coefficients))
-    matrix = np.array([[PINHOLE["fx_px"], 0, PINHOLE["cx_px"]],
-                       [0, PINHOLE["fy_px"], PINHOLE["cy_px"]], [0, 0, 1]])
     project = cv2.fisheye.projectPoints if model == "fisheye" else cv2.projectPoints
-    at, _ = project(points.reshape(1, -1, 3).astype(float), np.zeros(3), np.zeros(3), matrix,
+    at, _ = project(points.reshape(1, -1, 3).astype(float), np.zeros(3), np.zeros(3), MATRIX,
                     np.array(coefficients))
     row, column = np.mgrid[:240, :320]
     error = np.abs(at.reshape(240, 320, 2) - np.stack([column, row], axis=-1))
@@ -37,12 +36,11 @@ def test_opencv_projects_the_ray_of_a_pixel_to_that_pixel(model, coefficients):
 
 def test_reads_calibrations_written_by_opencv(tmp_path):
     cv2 = pytest.importorskip("cv2", reason="OpenCV, which writes them, is missing")
-    matrix = np.array([[220.0, 0, 158.0], [0, 222.0, 121.5], [0, 0, 1]])
     for name in ("lens.yml", "lens.yaml"):
         file = cv2.FileStorage(str(tmp_path / name), cv2.FILE_STORAGE_WRITE)
         file.write("image_width", 320)
         file.write("image_height", 240)
-        file.write("camera_matrix", matrix)
+        file.write("camera_matrix", MATRIX)
         file.write("distortion_coefficients", np.array([LENSES[1][1]]))
         file.release()
         lens = ts.Camera("paper-10f0", lens={"calibration": tmp_path / name}).lens
@@ -58,9 +56,7 @@ def test_undistorted_planes_equal_opencv_remap(tmp_path):
     decoder = ts.Decoder("hamiltonian-k4", ts.Camera("paper-10f0", lens=lens_of(model, coefficients)))
     decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "z.npy", kind="z")
     decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "u.npy", kind="z", undistort=True)
-    matrix = np.array([[PINHOLE["fx_px"], 0, PINHOLE["cx_px"]],
-                       [0, PINHOLE["fy_px"], PINHOLE["cy_px"]], [0, 0, 1]])
-    x, y = cv2.initUndistortRectifyMap(matrix, np.array(coefficients), None, matrix, (320, 240),
+    x, y = cv2.initUndistortRectifyMap(MATRIX, np.array(coefficients), None, MATRIX, (320, 240),
                                        cv2.CV_32FC1)
     at_x, at_y = np.rint(x).astype(int), np.rint(y).astype(int)
     seen = (at_x >= 0) & (at_x < 320) & (at_y >= 0) & (at_y < 240)

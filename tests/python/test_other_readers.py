@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenCV, Pillow and NumPy read the same values from our files, and we from theirs."""
 
-import io
 import itertools
 import os
 
@@ -33,6 +32,12 @@ def luminance(rgb, full):
     return share if share.ndim == 2 else share[..., :3] @ REC709
 
 
+def expect_albedo(tmp_path, rgb, full):
+    """Compares the albedo read from a.png with the luminance of grey or RGB values."""
+    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "a.png"), luminance(rgb, full),
+                               atol=2e-7)
+
+
 @pytest.mark.parametrize("mode, channels", [("1", 0), ("L", 0), ("LA", 2), ("RGB", 3), ("RGBA", 4)])
 def test_8_bit_png_equals_pillow(tmp_path, mode, channels):
     values = RANDOM.integers(0, 256, (5, 7, channels) if channels else (5, 7), np.uint8)
@@ -40,9 +45,7 @@ def test_8_bit_png_equals_pillow(tmp_path, mode, channels):
     image.save(tmp_path / "a.png")
     again = pillow.open(tmp_path / "a.png")
     assert again.mode == mode
-    expected = np.asarray(again.convert("L" if channels < 3 else "RGB"))
-    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "a.png"), luminance(expected, 255),
-                               atol=2e-7)
+    expect_albedo(tmp_path, again.convert("L" if channels < 3 else "RGB"), 255)
 
 
 @pytest.mark.parametrize("colours, transparent", [(2, None), (16, None), (256, 3)])
@@ -51,18 +54,14 @@ def test_png_with_a_palette_equals_pillow(tmp_path, colours, transparent):
     image.putpalette(RANDOM.integers(0, 256, 3 * colours, np.uint8).tobytes())
     options = {} if transparent is None else {"transparency": transparent}
     image.save(tmp_path / "a.png", **options)
-    expected = np.asarray(pillow.open(tmp_path / "a.png").convert("RGB"))
-    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "a.png"), luminance(expected, 255),
-                               atol=2e-7)
+    expect_albedo(tmp_path, pillow.open(tmp_path / "a.png").convert("RGB"), 255)
 
 
 @pytest.mark.parametrize("channels", [1, 3, 4])
 def test_16_bit_png_equals_opencv(tmp_path, channels):
     values = RANDOM.integers(0, 65536, (5, 7, channels), np.uint16).squeeze()
     assert cv2.imwrite(str(tmp_path / "a.png"), values)
-    rgb = values if channels == 1 else values[..., 2::-1]
-    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "a.png"), luminance(rgb, 65535),
-                               atol=2e-7)
+    expect_albedo(tmp_path, values if channels == 1 else values[..., 2::-1], 65535)
 
 
 def test_depth_in_png_is_exchanged_with_opencv(tmp_path):
@@ -104,68 +103,44 @@ def test_exr_of_every_kind_equals_opencv(tmp_path, kind, compression):
                                rtol=1e-6)
 
 
-@pytest.mark.parametrize("order", "<>")
-def test_pfm_of_both_byte_orders_is_read(tmp_path, order):
-    values = RANDOM.uniform(0, 1, (5, 7, 3)).astype(np.float32)
-    for name, kind, image in (("grey", "Pf", values[..., 0]), ("colour", "PF", values)):
-        with open(tmp_path / f"{name}.pfm", "wb") as file:
-            file.write(f"{kind}\n7 5\n{'-' if order == '<' else ''}1.0\n".encode())
-            file.write(image[::-1].astype(order + "f4").tobytes())
-        read = cv2.imread(str(tmp_path / f"{name}.pfm"), cv2.IMREAD_UNCHANGED)
-        np.testing.assert_array_equal(read if name == "grey" else read[..., ::-1], image)
-    np.testing.assert_array_equal(ts.read_depth(tmp_path / "grey.pfm"), values[..., 0])
-    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "colour.pfm"), luminance(values, 1),
-                               rtol=1e-6)
+def ply_of(vertices, triangles, count):
+    """Returns the bytes of a mesh whose faces store their number of corners as type `count`."""
+    names = {"u1": "uchar", "i4": "int", "u2": "ushort"}
+    header = (f"ply\nformat binary_big_endian 1.0\nelement vertex {len(vertices)}\n"
+              "property float x\nproperty float y\nproperty float z\n"
+              f"element face {len(triangles)}\n"
+              f"property list {names[count]} int vertex_indices\nend_header\n")
+    faces = np.zeros(len(triangles), [("n", ">" + count), ("corners", ">i4", 3)])
+    faces["n"], faces["corners"] = 3, triangles
+    return header.encode() + vertices.astype(">f4").tobytes() + faces.tobytes()
 
 
-def ply_of(vertices, triangles, form, number, count):
-    """Returns the bytes of a mesh, laid out with NumPy records."""
-    order = ">" if form == "binary_big_endian" else "<"
-    names = {"f4": "float", "f8": "double", "u1": "uchar", "i4": "int", "u2": "ushort"}
-    file = io.BytesIO()
-    file.write((f"ply\nformat {form} 1.0\ncomment by NumPy\nelement vertex {len(vertices)}\n"
-                + "".join(f"property {names[number]} {axis}\n" for axis in "xyz")
-                + f"element face {len(triangles)}\n"
-                f"property list {names[count]} int vertex_indices\nend_header\n").encode())
-    if form == "ascii":
-        np.savetxt(file, vertices, fmt="%.17g")
-        np.savetxt(file, np.insert(triangles, 0, 3, axis=1), fmt="%d")
-    else:
-        file.write(vertices.astype(order + number).tobytes())
-        faces = np.zeros(len(triangles), [("n", order + count), ("corners", order + "i4", 3)])
-        faces["n"], faces["corners"] = 3, triangles
-        file.write(faces.tobytes())
-    return file.getvalue()
-
-
-def test_ply_of_every_format_gives_the_same_mesh(tmp_path):
-    vertices = np.array([[-1, -1, 2], [1, -1, 2], [0, 1, 3], [0, 0, 1.5]], np.float32)
+def test_ply_faces_with_any_type_of_count_give_the_same_mesh(tmp_path):
+    vertices = np.array([[-1, -1, 2], [1, -1, 2], [0, 1, 3], [0, 0, 1.5]])
     triangles = np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
     seen = []
-    for form, number, count in itertools.product(
-            ["ascii", "binary_little_endian", "binary_big_endian"], ["f4", "f8"], ["u1", "u2", "i4"]):
-        (tmp_path / "a.ply").write_bytes(ply_of(vertices, triangles, form, number, count))
+    for count in ("u1", "u2", "i4"):
+        (tmp_path / "a.ply").write_bytes(ply_of(vertices, triangles, count))
         seen.append(ts.load_scene(tmp_path / "a.ply", width=16, height=12).depth_m)
     assert np.isfinite(seen[0]).any()
     for depth in seen[1:]:
         np.testing.assert_array_equal(depth, seen[0])
 
 
-@pytest.mark.parametrize("extension, options", [
-    (".tiff", {"compression": None}), (".tif", {"compression": "tiff_lzw"}),
-    (".tiff", {"compression": "tiff_adobe_deflate"}), (".tiff", {"compression": "packbits"}),
-    (".png", {})])
-def test_phase_images_of_pillow_decode_like_their_array(tmp_path, extension, options):
-    decode_phases(tmp_path, extension,
-                  lambda image, path: pillow.fromarray(image).save(path, **options))
+def by_pillow(**options):
+    return lambda image, path: pillow.fromarray(image).save(path, **options)
 
 
-@pytest.mark.parametrize("extension", [".tiff", ".png", ".pgm"])
-def test_phase_images_of_opencv_decode_like_their_array(tmp_path, extension):
-    decode_phases(tmp_path, extension, lambda image, path: cv2.imwrite(str(path), image))
+def by_opencv(image, path):
+    assert cv2.imwrite(str(path), image)
 
 
-def decode_phases(tmp_path, extension, write):
+@pytest.mark.parametrize("extension, write", [
+    (".tiff", by_pillow(compression=None)), (".tif", by_pillow(compression="tiff_lzw")),
+    (".tiff", by_pillow(compression="tiff_adobe_deflate")),
+    (".tiff", by_pillow(compression="packbits")), (".png", by_pillow()),
+    (".tiff", by_opencv), (".png", by_opencv), (".pgm", by_opencv)])
+def test_phase_images_decode_like_their_array(tmp_path, extension, write):
     raw = RANDOM.poisson(3000, (31, 53, 4)).astype(np.uint16)
     decoder = ts.Decoder("sinusoid-k4", ts.Camera("paper-10f0"))
     files = [tmp_path / f"p{k}{extension}" for k in range(4)]

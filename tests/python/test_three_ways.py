@@ -182,7 +182,6 @@ def test_decode_rejects_equally(ways, camera):
             (ValueError, "frame = 3", ["--frame", "3"], {"frame": 3}),
             (ValueError, "stack", ["--stack"], {"stack": True}),
             (ValueError, "outputs = delay", ["--outputs", "delay"], {"outputs": ["delay"]}),
-            (ValueError, "average = 4", ["--average", "4"], {"average": 4}),
             (OSError, "0.001 MB", ["--memory-mb", "0.001"], {"memory_mb": 0.001}),
             (OSError, "to be filtered", ["--filter", "light", "--memory-mb", "0.1"],
              {"filter": "light", "memory_mb": 0.1}),
@@ -195,18 +194,10 @@ def test_decode_rejects_equally(ways, camera):
         with pytest.raises(error, match=re.escape(word)) as caught:
             decoder.decode_recording("raw.npy", "d.npz", **options)
         assert str(caught.value) in done.stderr
-    with pytest.raises(OSError, match="choose another name"):
-        decoder.decode_recording("raw.npy", "raw.npy", frame=0, overwrite=True)
     with pytest.raises(ValueError, match="outputs = deep; must be depth, "):
         decoder.decode_recording("raw.npy", "d.npz", outputs=["deep"])
     with pytest.raises(ValueError, match="filter strength = weak; must be light, normal or strong"):
         decoder.decode_recording("raw.npy", "d.npz", filter="weak")
-    with pytest.raises(ValueError, match="average = 0; must be >= 1"):
-        decoder.decode_recording("raw.npy", "d.npz", average=0)
-    with pytest.raises(ValueError, match=r"averaged = 0; must be in \(0, 1000000000\]"):
-        decoder.decode_recording("raw.npy", "d.npz", averaged=0)
-    with pytest.raises(OSError, match="found 2 files, one per measurement; expected 4"):
-        decoder.decode_recording(["raw.npy", "raw.npy"], "d.npz")
     with pytest.raises(ValueError, match=r"raw\[1\]: got float64 of shape \(2, 3\); needs float32"):
         decoder.decode([np.ones((2, 3), np.float32), np.ones((2, 3))])
     with pytest.raises(ts.Interrupted):
