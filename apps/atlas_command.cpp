@@ -184,17 +184,11 @@ struct AtlasArguments {
 
 /// Returns true if a value equals "5" or lies in "5:20".
 bool lies_in(double value, const std::string& limits, const char* option) {
-  double low = 0.0, high = 0.0;
-  if (limits.find(':') == std::string::npos) {
-    if (!CLI::detail::lexical_cast(limits, low))
-      throw UsageError(
-          fmt::format("{}: found {}; expected a number, or a range such as 5:20", option, limits));
-    high = low;
-  } else if (!read_number_pair(limits, ':', low, high)) {
+  std::array<double, 2> range{};
+  if (!read_limits(limits, range))
     throw UsageError(
         fmt::format("{}: found {}; expected a number, or a range such as 5:20", option, limits));
-  }
-  return value >= low && value <= high;
+  return value >= range[0] && value <= range[1];
 }
 
 bool is_listed(int value, const std::vector<int>& values) {

@@ -102,6 +102,11 @@ std::string brief(const IdealCodeFit& fit) {
               : "");
 }
 
+/// Of one measurement.
+double largest_swing(const Eigen::MatrixXd& correlation) {
+  return (correlation.colwise().maxCoeff() - correlation.colwise().minCoeff()).maxCoeff();
+}
+
 nlohmann::ordered_json fit_json(const IdealCodeFit& fit) {
   nlohmann::ordered_json harmonics = nlohmann::ordered_json::array();
   for (const HarmonicRatio& h : fit.harmonics)
@@ -128,26 +133,23 @@ nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
   for (const Estimate& m : found.tap_mismatch) mismatch.push_back(estimate_json(m));
   nlohmann::ordered_json codes = nlohmann::ordered_json::array();
   for (const IdealCodeFit& fit : fits) codes.push_back(fit_json(fit));
-  nlohmann::ordered_json document = {
-      {"samples", found.table.samples()},
-      {"measurements", found.table.columns()},
-      {"noise_rms", found.noise_rms},
-      {"noise_source", found.noise_source},
-      {"largest_standard_error", found.standard_error.maxCoeff()},
-      {"model_error_percent", found.table.model_error_percent},
-      {"swing", found.table.correlation.colwise().maxCoeff().maxCoeff() -
-                    found.table.correlation.colwise().minCoeff().minCoeff()},
-      {"dead_pixels", found.dead.total()},
-      {"drift_known", found.drift_known},
-      {"drift_corrected", found.drift_corrected},
-      {"light_drift", found.drift_known ? estimate_json(found.light_drift) : nullptr},
-      {"level_drift", found.drift_known ? estimate_json(found.level_drift) : nullptr},
-      {"tap_mismatch", mismatch},
-      {"offset_standard_error_m", number_json(found.delay_error_m)},
-      {"gain_standard_error", number_json(found.gain_error)},
-      {"ideal_codes", codes},
-      {"notes", found.notes}};
-  return document;
+  return {{"samples", found.table.samples()},
+          {"measurements", found.table.columns()},
+          {"noise_rms", found.noise_rms},
+          {"noise_source", found.noise_source},
+          {"largest_standard_error", found.standard_error.maxCoeff()},
+          {"model_error_percent", found.table.model_error_percent},
+          {"swing", largest_swing(found.table.correlation)},
+          {"dead_pixels", found.dead.total()},
+          {"drift_known", found.drift_known},
+          {"drift_corrected", found.drift_corrected},
+          {"light_drift", found.drift_known ? estimate_json(found.light_drift) : nullptr},
+          {"level_drift", found.drift_known ? estimate_json(found.level_drift) : nullptr},
+          {"tap_mismatch", mismatch},
+          {"offset_standard_error_m", number_json(found.delay_error_m)},
+          {"gain_standard_error", number_json(found.gain_error)},
+          {"ideal_codes", codes},
+          {"notes", found.notes}};
 }
 
 void check_outputs(CorrelationArguments& arguments, const Session& session) {
@@ -181,16 +183,11 @@ void run(CorrelationArguments& arguments, const Session& session) {
                                           DepthKind::radial) == DepthKind::z,
                             arguments.reference,
                             arguments.table,
-                            arguments.output.camera_path,
                             arguments.camera.name,
-                            arguments.output.policy,
+                            arguments.output,
                             arguments.codes,
                             arguments.taps.file_options(),
-                            base,
-                            [&](const Camera& camera, const std::string& next) {
-                              arguments.output.write_camera(camera, session, next);
-                            },
-                            [&](const Page& page) { arguments.output.write_page(page, session); }},
+                            base},
                            session);
     return;
   }
@@ -219,14 +216,12 @@ void run(CorrelationArguments& arguments, const Session& session) {
         100 * fits.front().residual));
 
   session.print_json(document_of(found, fits));
-  const double swing =
-      (found.table.correlation.colwise().maxCoeff() - found.table.correlation.colwise().minCoeff())
-          .maxCoeff();
   session.say(
       fmt::format("table of {} x {}: standard errors up to {:.3g}, values span {:.5g} raw numbers "
                   "(noise {:.3g} per number, from {}), model error {:.2g} % of the signal",
                   found.table.samples(), found.table.columns(), found.standard_error.maxCoeff(),
-                  swing, found.noise_rms, found.noise_source, found.table.model_error_percent));
+                  largest_swing(found.table.correlation), found.noise_rms, found.noise_source,
+                  found.table.model_error_percent));
   if (!found.maps.empty())
     session.say(
         fmt::format("maps of {} x {} pixels: standard error of offsets {}, of gains {:.2g} %",

@@ -81,6 +81,7 @@ std::string lines_of(const CalibratedDepth& found) {
 }  // namespace
 
 void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Session& session) {
+  const CalibrateOutput& output = arguments.output;
   if (arguments.codes.size() != 1)
     throw UsageError("--reference requires --code, the code that the camera used");
   const CodeSet code = load_camera_code(arguments.codes.front(), arguments.camera, arguments.file);
@@ -103,16 +104,15 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   session.say(lines_of(found));
   std::string next;
   if (!arguments.table.empty()) {
-    write_calibrated_table(arguments.table, found.table, arguments.policy);
+    write_calibrated_table(arguments.table, found.table, output.policy);
     session.say(fmt::format("wrote {}", arguments.table));
-    next =
-        fmt::format("tofsmith decode RAW --code {} --camera {} -o depth.npy", arguments.table,
-                    !arguments.camera_path.empty() ? arguments.camera_path : arguments.camera_name);
+    next = fmt::format("tofsmith decode RAW --code {} --camera {} -o depth.npy", arguments.table,
+                       !output.camera_path.empty() ? output.camera_path : arguments.camera_name);
   }
-  arguments.write_page(
-      depth_report(found, arguments.frames.front().string(), session.command_line));
-  if (!arguments.camera_path.empty())
-    arguments.write_camera(with_depth(arguments.camera, found), next);
+  output.write_page(depth_report(found, arguments.frames.front().string(), session.command_line),
+                    session);
+  if (!output.camera_path.empty())
+    output.write_camera(with_depth(arguments.camera, found), session, next);
   else if (!next.empty())
     session.say("next: " + next);
 }

@@ -3,14 +3,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "calibrate_output.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/report/page.hpp"
 
 namespace tofsmith::apps {
 
@@ -20,13 +18,11 @@ struct DepthCalibrationArguments {
   std::string raw_format;  ///< file; empty: .npy, .npz or .h5
   std::string dataset;     ///< dataset of .npz and .h5; empty: "raw", or the only one
   bool reference_is_z = false;
-  std::string reference, table, camera_path, camera_name;
-  OutputPolicy policy;
+  std::string reference, table, camera_name;
+  CalibrateOutput output;
   std::vector<std::string> codes;
   CodeFileOptions file;
   Camera camera;
-  std::function<void(const Camera&, const std::string& next)> write_camera;
-  std::function<void(const Page&)> write_page;
 };
 
 /// Calibrates against reference depth, prints the result and writes the table.

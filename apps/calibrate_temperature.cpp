@@ -103,13 +103,6 @@ ReadTemperatures read_temperatures(const TemperatureArguments& arguments) {
   return result;
 }
 
-Camera camera_of(const Camera& camera, const TemperatureDrift& found,
-                 const TemperatureArguments& arguments) {
-  // Without a drift of the sensor, its reference is not valid.
-  return with_temperature(camera, found, arguments.reference_c,
-                          found.sensor ? arguments.sensor_reference_c : std::nullopt);
-}
-
 void run(TemperatureArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   arguments.output.check(session);
@@ -131,8 +124,11 @@ void run(TemperatureArguments& arguments, const Session& session) {
   session.say(lines_of(found));
   arguments.output.write_page(temperature_report(found, arguments.file, session.command_line),
                               session);
+  // Without a drift of the sensor, its reference is not valid.
+  const std::optional<double> sensor_reference_c =
+      found.sensor ? arguments.sensor_reference_c : std::nullopt;
   arguments.output.write_camera(
-      camera_of(camera, found, arguments), session,
+      with_temperature(camera, found, arguments.reference_c, sensor_reference_c), session,
       fmt::format(
           "tofsmith decode RAW --code {} --camera {} --temperature {:.0f}{}", arguments.code,
           arguments.output.camera_path, found.mean_c,

@@ -210,15 +210,12 @@ void add_settings(CLI::App& command, const char* argument, const char* whose, CL
 }  // namespace
 
 void FilterArguments::add_to(CLI::App& command) {
-  std::vector<std::string> strengths;
-  for (const FilterStrength strength : all_filter_strengths)
-    strengths.emplace_back(name_of(strength));
   CLI::Option* const filter =
       command
           .add_option("--filter", strength_,
                       "spatial filter, which averages measurements of neighbouring pixels at "
                       "the same depth before decoding: light, normal or strong (default: off)")
-          ->check(one_of(strengths));
+          ->check(one_of(detail::texts_of_words<FilterStrength>()));
   add_settings<FilterOptions>(command, "--filter-set", "the spatial filter", filter, settings_);
   CLI::Option* const time_filter =
       command

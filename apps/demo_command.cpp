@@ -52,10 +52,6 @@ std::vector<NamedLight> lights_of(const Camera& camera) {
 constexpr std::array depth_files = {"depth.npy", "depth.npz", "depth.exr", "depth.pfm",
                                     "depth.png"};
 
-DesignOptions design_options(const DemoArguments& arguments) {
-  return with_effort(arguments.options, arguments.effort);
-}
-
 std::vector<CodeSet> codes_for_scene(const DesignResult& result) {
   std::vector<CodeSet> codes{result.winner().code};
   for (const char* name : {"sinusoid-k4", "multifrequency-k5"})
@@ -144,7 +140,7 @@ void run(const DemoArguments& arguments, const Session& session) {
   // 1. Load the camera and the scene, and prepare the directory.
   const Camera camera = arguments.camera.load();
   LoadedScene loaded = scene_of(arguments.scene, camera);
-  const DesignOptions options = design_options(arguments);
+  const DesignOptions options = with_effort(arguments.options, arguments.effort);
   const FreshDirectory cleanup(arguments.output);
   const DesignDirectory directory(arguments.output);
   if (directory.holds_design() && !session.force)

@@ -11,6 +11,7 @@
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::apps {
 
@@ -104,6 +105,21 @@ CLI::Option* add_field_option(CLI::App& command, Options& options, std::string_v
   });
   TOFSMITH_ASSERT_EQ(added != nullptr, true);  // a field of a type that options support
   return added;
+}
+
+/// Adds `--volts LOW,HIGH`, the voltages of waveforms.
+inline void add_volts_option(CLI::App& command, ExportOptions& options) {
+  command
+      .add_option_function<std::vector<double>>(
+          "--volts",
+          [&options](const std::vector<double>& volts) {
+            options.low_v = volts[0];
+            options.high_v = volts[1];
+          },
+          "output voltages LOW,HIGH [V]: LOW for no light or zero gain, HIGH for peak light or "
+          "full gain (default: 0,1)")
+      ->delimiter(',')
+      ->expected(2);
 }
 
 /// Adds options of fields of one struct to a command.

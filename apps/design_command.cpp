@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <array>
 #include <optional>
 #include <string>
 
@@ -40,15 +39,6 @@ class OperatingMultipathArguments {
   std::optional<double> weight_;
   const CLI::Option* two_return_weight_ = nullptr;
 };
-
-/// Reads one number, or two separated by a colon: minimum and maximum. Returns false for other
-/// text.
-bool read_limits(const std::string& text, std::array<double, 2>& limits) {
-  if (text.find(':') != std::string::npos) return read_number_pair(text, ':', limits[0], limits[1]);
-  if (!CLI::detail::lexical_cast(text, limits[0])) return false;
-  limits[1] = limits[0];
-  return true;
-}
 
 void read_multipath(const std::string& text, OperatingMultipath& returns) {
   for (const std::string& part : CLI::detail::split(text, ',')) {

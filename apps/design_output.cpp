@@ -14,35 +14,6 @@ namespace tofsmith::apps {
 
 namespace {
 
-void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
-                   DepthErrorKind kind) {
-  rows.front().insert(rows.front().end(), {"second return (mm)", "two-return (mm)"});
-  const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const OperatingMultipathReport& report = *order[i]->multipath;
-    rows[i + 1].push_back(estimate_mm_text(report.single_path.of(kind)));
-    rows[i + 1].push_back(report.two_return ? estimate_mm_text(report.two_return->circular_m)
-                                            : "unsupported");
-  }
-}
-
-void add_motion(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
-                DepthErrorMeasure measure) {
-  rows.front().push_back("motion (mm)");
-  const std::vector<const Candidate*> order = by_geometric_mean_error(result, measure);
-  for (std::size_t i = 0; i < order.size(); ++i)
-    rows[i + 1].push_back(fmt::format("{:.3f}", 1e3 * order[i]->exposure_order->rms_bias_m));
-}
-
-void add_interference(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
-                      DepthErrorMeasure measure) {
-  rows.front().push_back("interference (mm)");
-  const std::vector<const Candidate*> order = by_geometric_mean_error(result, measure);
-  for (std::size_t i = 0; i < order.size(); ++i)
-    rows[i + 1].push_back(
-        estimate_mm_text(order[i]->interference->of(measure.kind).geometric_mean_m));
-}
-
 /// Returns sentences about the winner and its advantage over other codes.
 std::string verdict(const Camera& camera, const DesignResult& result) {
   const DepthErrorMeasure measure = camera.operating.measure();
@@ -81,6 +52,8 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
   if (session.json) return session.print_document(design_document(camera, result, options));
   const DepthErrorKind kind = camera.operating.error;
   const ErrorStatistic statistic = camera.operating.statistic;
+  const std::vector<const Candidate*> order =
+      by_geometric_mean_error(result, camera.operating.measure());
   const char* rms = statistic == ErrorStatistic::rmse ? "rms " : "";
   const auto error_text = [&](const Candidate& c, DepthErrorKind of) {
     return estimate_mm_text(c.error.of({of, statistic}).geometric_mean_m);
@@ -88,13 +61,31 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
   std::vector<std::vector<std::string>> rows{
       {"code", exposures_by_taps_title, fmt::format("linear {}(mm)", rms),
        fmt::format("circular {}(mm)", rms), "rotation (bin)", "made by"}};
-  for (const Candidate* c : by_geometric_mean_error(result, camera.operating.measure()))
+  for (const Candidate* c : order)
     rows.push_back(
         {c->code.name(), exposures_by_taps(c->error), error_text(*c, DepthErrorKind::linear),
          error_text(*c, DepthErrorKind::circular), fmt::format("{}", c->rotation_bin), c->method});
-  if (camera.operating.multipath) add_multipath(rows, result, kind);
-  if (camera.operating.interference) add_interference(rows, result, camera.operating.measure());
-  if (camera.operating.velocity_m_per_s) add_motion(rows, result, camera.operating.measure());
+  const auto add_column = [&](const char* title, const auto& text_of) {
+    rows.front().push_back(title);
+    for (std::size_t i = 0; i < order.size(); ++i) rows[i + 1].push_back(text_of(*order[i]));
+  };
+  if (camera.operating.multipath) {
+    add_column("second return (mm)", [&](const Candidate& c) {
+      return estimate_mm_text(c.multipath->single_path.of(kind));
+    });
+    add_column("two-return (mm)", [](const Candidate& c) {
+      const auto& two_return = c.multipath->two_return;
+      return two_return ? estimate_mm_text(two_return->circular_m) : std::string("unsupported");
+    });
+  }
+  if (camera.operating.interference)
+    add_column("interference (mm)", [&](const Candidate& c) {
+      return estimate_mm_text(c.interference->of(kind).geometric_mean_m);
+    });
+  if (camera.operating.velocity_m_per_s)
+    add_column("motion (mm)", [](const Candidate& c) {
+      return fmt::format("{:.3f}", 1e3 * c.exposure_order->rms_bias_m);
+    });
   session.say(text_table(rows));
   session.say(depth_error_legend);
   if (kind == DepthErrorKind::linear)

@@ -84,9 +84,7 @@ std::vector<std::vector<std::string>> evaluation_rows(const std::vector<Evaluate
   std::vector<Row> rows{{"code", exposures_by_taps_title, "light", "signal (e/s)", "ambient (e/s)",
                          "linear (mm)", "circular (mm)", "outliers (%)", "Cramer-Rao (mm)",
                          "receiver (mm)", "direct ToF (mm)"}};
-  const auto error_m = [kind](const PointDepthError& p) {
-    return (kind == DepthErrorKind::linear ? p.linear_mde_m : p.circular_mde_m).value;
-  };
+  const auto error_m = [kind](const PointDepthError& p) { return p.of(kind).value; };
   for (const EvaluatedCode& code : codes) {
     const std::vector<PointDepthError>& points = code.error.points;
     const auto [best, worst] = std::ranges::minmax_element(points, {}, error_m);

@@ -23,7 +23,6 @@ struct ExportArguments {
   CameraArguments camera;
   TapArguments taps;
   ExportRequest request;
-  std::vector<double> volts;
   EvaluateOptions evaluate{.trials = 2000};
   bool no_loss = false;
 };
@@ -56,10 +55,6 @@ std::string script_count(std::size_t scripts) {
 
 void run(ExportArguments& arguments, const Session& session) {
   ExportRequest& request = arguments.request;
-  if (!arguments.volts.empty()) {
-    request.options.low_v = arguments.volts[0];
-    request.options.high_v = arguments.volts[1];
-  }
   request.output = arguments.output;
   request.policy = session.output_policy();
   if (!arguments.no_loss) request.loss = arguments.evaluate;
@@ -118,12 +113,7 @@ void add_export_command(CLI::App& app, Session& session) {
   fields.add("sample_rate_hz", "--rate");
   fields.add("edge_grid_s", "--edge-grid");
   fields.add("periods", "--periods");
-  command
-      ->add_option("--volts", arguments->volts,
-                   "output voltages LOW,HIGH [V]: LOW for no light or zero gain, HIGH for peak "
-                   "light or full gain (default: 0,1)")
-      ->delimiter(',')
-      ->expected(2);
+  add_volts_option(*command, options);
   const FieldOptions evaluate(*command, arguments->evaluate);
   evaluate.add("trials", "--trials")->description("trials per operating point");
   evaluate.add("seed", "--seed");

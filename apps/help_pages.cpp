@@ -153,11 +153,6 @@ std::string remarks(const CLI::Option& option, const std::string& rule) {
   return all.empty() ? "" : fmt::format(" ({})", fmt::join(all, "; "));
 }
 
-std::string command_words(const CLI::App& command) {
-  const CLI::App* const parent = command.get_parent();
-  return parent == nullptr ? "" : command_words(*parent) + " " + command.get_name();
-}
-
 /// Arguments of an example by the words of the command, for commands that set no footer.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 17> examples = {{
     {" demo", "-o out"},
@@ -186,6 +181,11 @@ std::vector<std::string> dashed_names(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   return names;
+}
+
+std::string command_words(const CLI::App& command) {
+  const CLI::App* const parent = command.get_parent();
+  return parent == nullptr ? "" : command_words(*parent) + " " + command.get_name();
 }
 
 void add_examples(CLI::App& app) {
@@ -251,15 +251,9 @@ using Words = std::vector<std::string>;
 
 /// Returns {"a", "b"} for "TEXT:{a,b}"; empty if any value is allowed.
 Words choices_of(const std::string& type) {
-  Words choices;
   const std::size_t begin = type.find('{'), end = type.find('}');
-  if (begin == std::string::npos || end == std::string::npos) return choices;
-  for (std::size_t i = begin + 1; i < end;) {
-    const std::size_t comma = std::min(type.find(',', i), end);
-    choices.push_back(type.substr(i, comma - i));
-    i = comma + 1;
-  }
-  return choices;
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  return CLI::detail::split(type.substr(begin + 1, end - begin - 1), ',');
 }
 
 Words names_of(const CLI::Option& option) {

@@ -29,6 +29,9 @@ void add_examples(CLI::App& app);
 /// Returns the names of an option with their dashes: "-o", "--output". Positionals have none.
 std::vector<std::string> dashed_names(const CLI::Option& option);
 
+/// Returns the names of a command and its parents, such as " calibrate noise".
+std::string command_words(const CLI::App& command);
+
 /// Returns all commands with their arguments, for manual pages and shell completion.
 ///   {"version": "0.1.0",
 ///    "names": {"camera": ["paper-10f0", ...], "code": [...], "scene": [...]},    built-in ones

@@ -50,12 +50,6 @@ const CLI::App& chosen(const CLI::App& app) {
   return subcommands.empty() ? app : chosen(*subcommands.front());
 }
 
-/// Returns the names of a command and its parents, such as " calibrate noise".
-std::string words_of(const CLI::App& command) {
-  const CLI::App* parent = command.get_parent();
-  return parent == nullptr ? std::string() : words_of(*parent) + " " + command.get_name();
-}
-
 /// Adds the names of all options with a value, of the program and of all its subcommands.
 void add_options_with_values(const CLI::App& app, std::set<std::string>& names) {
   for (const CLI::Option* option : app.get_options()) {
@@ -167,7 +161,7 @@ std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
 
 int refuse_usage(const CLI::App& app, const std::string& problem) {
   fmt::print(stderr, "tofsmith: {}\nSee `tofsmith{} --help`.\n", printed(problem),
-             words_of(chosen(app)));
+             command_words(chosen(app)));
   return exit_usage;
 }
 

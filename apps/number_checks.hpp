@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -23,6 +24,15 @@ bool read_number_pair(const std::string& text, char separator, Number& first, Nu
   const std::size_t at = text.find(separator);
   return at != std::string::npos && CLI::detail::lexical_cast(text.substr(0, at), first) &&
          CLI::detail::lexical_cast(text.substr(at + 1), second);
+}
+
+/// Reads one number, or two separated by a colon: minimum and maximum. Returns false for other
+/// text.
+inline bool read_limits(const std::string& text, std::array<double, 2>& limits) {
+  if (text.find(':') != std::string::npos) return read_number_pair(text, ':', limits[0], limits[1]);
+  if (!CLI::detail::lexical_cast(text, limits[0])) return false;
+  limits[1] = limits[0];
+  return true;
 }
 
 /// Returns a validator that converts a value such as "20MHz" to a number in the option's unit, and

@@ -36,14 +36,6 @@
 namespace tofsmith::apps {
 namespace {
 
-/// Request to simulate several scenes.
-struct TrainingSetRequest {
-  std::vector<std::string> scenes;  ///< folders, lists (.txt) and files
-  SceneSource source;               ///< specifies how each scene is read
-  std::filesystem::path directory;
-  TrainingSetOptions options;
-};
-
 /// Returns true if the arguments name more than one scene.
 bool are_many_scenes(const std::vector<std::string>& scenes) {
   std::error_code ignored;
@@ -71,23 +63,38 @@ LightRange light_range(const std::string& what, const std::string& range,
   return parsed;
 }
 
+struct SimulateArguments {
+  std::vector<std::string> scenes;
+  SceneSource scene;
+  CameraArguments camera;
+  TapArguments taps;
+  std::string code;
+  std::optional<double> signal_e_per_s, ambient_e_per_s;
+  std::string signal_range, ambient_range, shard;
+  CaptureOptions options;
+  MultipathLightArguments returns;
+  std::string stray_light;
+  std::string output, truth, truth_near, truth_far;
+};
+
 /// Simulates the scenes and prints a summary.
 /// @throws as write_training_set(); std::runtime_error if some scenes failed
-void make_training_set(const TrainingSetRequest& request, const CodeSet& code, const Camera& camera,
-                       Session& session) {
-  const std::vector<TrainingScene> scenes = training_scenes(request.scenes);
+void make_training_set(const SimulateArguments& arguments, const TrainingSetOptions& options,
+                       const CodeSet& code, const Camera& camera, Session& session) {
+  const std::filesystem::path directory = arguments.output;
+  const std::vector<TrainingScene> scenes = training_scenes(arguments.scenes);
   const auto load = [&](const TrainingScene& scene) {
-    SceneSource source = request.source;
+    SceneSource source = arguments.scene;
     source.scene = scene.file.string();
     LoadedScene loaded = scene_of(source, camera);
     return LoadedTrainingScene{std::move(loaded.image), loaded.view};
   };
-  const FreshDirectory fresh(request.directory);
-  make_output_directory(request.directory);
-  session.directory = request.directory;
-  const TrainingSetRun run = write_training_set(request.directory, scenes, code, camera, load,
-                                                request.options, terminal_progress("simulating"));
-  session.print_json({{"directory", request.directory.string()},
+  const FreshDirectory fresh(directory);
+  make_output_directory(directory);
+  session.directory = directory;
+  const TrainingSetRun run = write_training_set(directory, scenes, code, camera, load, options,
+                                                terminal_progress("simulating"));
+  session.print_json({{"directory", directory.string()},
                       {"index", run.index.string()},
                       {"code", code.name()},
                       {"camera", camera.name},
@@ -102,20 +109,6 @@ void make_training_set(const TrainingSetRequest& request, const CodeSet& code, c
         fmt::format("{} of {} scenes failed, and the others were written; first failure: {}",
                     run.failures.size(), run.scenes, run.failures.front()));
 }
-
-struct SimulateArguments {
-  std::vector<std::string> scenes;
-  SceneSource scene;
-  CameraArguments camera;
-  TapArguments taps;
-  std::string code;
-  std::optional<double> signal_e_per_s, ambient_e_per_s;
-  std::string signal_range, ambient_range, shard;
-  CaptureOptions options;
-  MultipathLightArguments returns;
-  std::string stray_light;
-  std::string output, truth, truth_near, truth_far;
-};
 
 /// Simulated capture of one scene.
 struct CapturedScene {
@@ -228,15 +221,13 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
   const Camera camera = arguments.camera.load();
   const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
   make_training_set(
-      {.scenes = arguments.scenes,
-       .source = arguments.scene,
-       .directory = arguments.output,
-       .options = {.signal = light_range("signal", arguments.signal_range, arguments.signal_e_per_s,
-                                         usual.signal_e_per_s),
-                   .ambient = light_range("ambient", arguments.ambient_range,
-                                          arguments.ambient_e_per_s, usual.ambient_e_per_s),
-                   .capture = arguments.options,
-                   .shard = parse_shard(arguments.shard)}},
+      arguments,
+      {.signal = light_range("signal", arguments.signal_range, arguments.signal_e_per_s,
+                             usual.signal_e_per_s),
+       .ambient = light_range("ambient", arguments.ambient_range, arguments.ambient_e_per_s,
+                              usual.ambient_e_per_s),
+       .capture = arguments.options,
+       .shard = parse_shard(arguments.shard)},
       load_camera_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code})),
       camera, session);
 }

@@ -31,20 +31,6 @@ extern "C" void stop_or_set_flag(int signal) {
   flag = 1;
   std::signal(signal, SIG_DFL);
 }
-}  // namespace
-
-void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-    if (std::signal(signal, stop_or_set_flag) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
-  std::signal(SIGXFSZ, SIG_IGN);  // report files beyond the size limit as write errors
-}
-
-bool interrupted() {
-  someone_looks = 1;
-  return flag != 0;
-}
-
-namespace {
 
 using Clock = std::chrono::steady_clock;
 
@@ -148,6 +134,17 @@ Progress progress_of(std::string_view title) {
 bool is_silent = false;
 
 }  // namespace
+
+void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, stop_or_set_flag) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  std::signal(SIGXFSZ, SIG_IGN);  // report files beyond the size limit as write errors
+}
+
+bool interrupted() {
+  someone_looks = 1;
+  return flag != 0;
+}
 
 Progress terminal_progress(std::string_view title) {
   if (is_silent) return [](double, std::string_view) { return !interrupted(); };

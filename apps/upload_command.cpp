@@ -31,7 +31,6 @@ struct UploadArguments {
   ExportOptions options;
   UploadRequest request;
   UploadSelection selection;
-  std::vector<double> volts;
   double timeout_s = 5.0;
   bool dry_run = false;
 };
@@ -154,10 +153,6 @@ void run(UploadArguments& arguments, const Session& session) {
   check_usage(arguments);
   load_in(arguments.load);
   if (!arguments.model.empty()) as_usage([&] { return generator_model(arguments.model); });
-  if (!arguments.volts.empty()) {
-    arguments.options.low_v = arguments.volts[0];
-    arguments.options.high_v = arguments.volts[1];
-  }
   const Camera camera = arguments.camera.load();
   require_no_measured_table(arguments.code);
   const CodeSet code =
@@ -175,12 +170,7 @@ void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
   fields.add("sample_rate_hz", "--rate");
   fields.add("edge_grid_s", "--edge-grid")->group(for_experts);
   fields.add("periods", "--periods")->group(for_experts);
-  command
-      .add_option("--volts", arguments.volts,
-                  "output voltages LOW,HIGH [V]: LOW for no light or zero gain, HIGH for peak "
-                  "light or full gain (default: 0,1)")
-      ->delimiter(',')
-      ->expected(2);
+  add_volts_option(command, options);
   command.add_option("--load", arguments.load, "load impedance in ohms, or inf")
       ->capture_default_str();
   const FieldOptions selection(command, arguments.selection);

@@ -49,10 +49,12 @@ export function notice(text) {
           []));
 }
 
-/** Shows an error message in an element; an empty text hides it. */
-export function showProblem(place, text) {
+/** Shows an error message in an element and marks the input as invalid; an empty text hides it. */
+export function showProblem(place, text, input = null) {
   place.hidden = !text;
   if (place.textContent !== (text ?? '')) place.textContent = text ?? '';
+  input?.toggleAttribute('aria-invalid', false);
+  if (text) input?.setAttribute('aria-invalid', 'true');
 }
 
 const widths = new WeakMap();

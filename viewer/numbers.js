@@ -2,23 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Number formats and axis ticks.
 
-const superscripts = {
-  '-': '\u207b',
-  0: '\u2070',
-  1: '\u00b9',
-  2: '\u00b2',
-  3: '\u00b3',
-  4: '\u2074',
-  5: '\u2075',
-  6: '\u2076',
-  7: '\u2077',
-  8: '\u2078',
-  9: '\u2079'
-};
+const superscripts = '\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079';
 
 /** Returns 10 to an integer power as text. */
 export const powerText = (power) =>
-    '10' + Array.from(String(power), (c) => superscripts[c]).join('');
+    '10' + Array.from(String(power), (c) => superscripts[c] ?? '\u207b').join('');
 
 /** Formats a number with at most this many significant digits, without trailing zeros. */
 export function shortText(value, digits = 4) {

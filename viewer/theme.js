@@ -3,11 +3,6 @@
 // Colour theme: light, dark, or the system setting.
 
 const themes = ['auto', 'light', 'dark'];
-const names = {
-  auto: 'Auto',
-  light: 'Light',
-  dark: 'Dark'
-};
 const place = 'tofsmith-lab-theme';
 
 function kept() {
@@ -25,8 +20,8 @@ export function startTheme(button) {
       delete document.documentElement.dataset.theme;
     else
       document.documentElement.dataset.theme = theme;
-    button.textContent = `\u25d0 ${names[theme]}`;
-    button.setAttribute('aria-label', `Colours: ${names[theme].toLowerCase()}; change`);
+    button.textContent = `\u25d0 ${theme[0].toUpperCase()}${theme.slice(1)}`;
+    button.setAttribute('aria-label', `Colours: ${theme}; change`);
     button.dataset.now = theme;
     dispatchEvent(new Event('themechange'));
   };

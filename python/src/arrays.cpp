@@ -70,6 +70,28 @@ Image<float> taken_image(const py::dict& options, const char* name) {
   return to_image(options.attr("pop")(name, py::none()), name);
 }
 
+SceneImage scene_of(const py::dict& planes) {
+  const Image<float> depth_m = to_image(planes["depth_m"], "depth_m");
+  const auto shape = [](const Image<float>& plane) {
+    return fmt::format("shape ({}, {})", plane.height, plane.width);
+  };
+  if (depth_m.empty()) refuse("depth_m", shape(depth_m), "(H, W) with at least one pixel");
+  SceneImage scene(depth_m.height, depth_m.width);
+  scene.depth_m = depth_m;
+  const auto take = [&](const char* name, Image<float>& plane) {
+    const py::object values = planes[name];
+    if (values.is_none()) return;
+    plane = to_image(values, name);
+    if (plane.height != depth_m.height || plane.width != depth_m.width)
+      refuse(name, shape(plane), shape(depth_m) + " as of depth_m");
+  };
+  take("albedo", scene.albedo);
+  take("cosine", scene.cosine);
+  take("ambient_scale", scene.ambient_scale);
+  scene.validate();
+  return scene;
+}
+
 RawFrames to_raw_frames(const py::object& values, const char* argument) {
   RawFrames raw;
   if (values.is_none()) return raw;
@@ -90,24 +112,10 @@ py::array_t<float> adopt(RawFrames&& raw) {
   return adopt(std::move(raw.values), {raw.frames, raw.height, raw.width, raw.measurements});
 }
 
-std::string shape_of(const py::array& array) {
-  std::string text = "(";
-  for (Stride axis = 0; axis < array.ndim(); ++axis) {
-    text += std::to_string(array.shape(axis));
-    if (axis + 1 < array.ndim()) text += ", ";
-  }
-  if (array.ndim() == 1) text += ",";
-  text += ")";
-  return text;
-}
+std::string shape_of(const py::array& array) { return py::str(array.attr("shape")); }
 
 void refuse(const std::string& argument, const std::string& got, const std::string& needs) {
-  std::string text = argument;
-  text += ": got ";
-  text += got;
-  text += "; needs ";
-  text += needs;
-  throw std::invalid_argument(text);
+  throw std::invalid_argument(fmt::format("{}: got {}; needs {}", argument, got, needs));
 }
 
 namespace {
@@ -160,15 +168,8 @@ std::string measurements_needed(const py::array& array, bool is_planar, int foun
   return text;
 }
 
-}  // namespace
-
-std::vector<py::ssize_t> RawArray::plane_shape() const {
-  if (!is_stack) return {height, width};
-  return {static_cast<py::ssize_t>(frames.size()), height, width};
-}
-
-void RawArray::set_averaged(const Floats& averaged) {
-  const std::vector<py::ssize_t> shape = plane_shape();
+void set_averaged(RawArray& raw, const Floats& averaged) {
+  const std::vector<py::ssize_t> shape = raw.plane_shape();
   if (std::vector<py::ssize_t>(averaged.shape(), averaged.shape() + averaged.ndim()) != shape)
     refuse("averaged", "shape " + shape_of(averaged),
            "shape " + std::string(py::str(py::tuple(py::cast(shape)))));
@@ -177,11 +178,19 @@ void RawArray::set_averaged(const Floats& averaged) {
   if (const float* const bad = std::find_if_not(first, first + averaged.size(), is_count);
       bad != first + averaged.size())
     refuse("averaged", fmt::format("{}", *bad), "finite numbers > 0");
-  for (std::size_t f = 0; f < frames.size(); ++f)
-    frames[f].averaged = first + static_cast<std::ptrdiff_t>(f) * frames[f].pixels();
+  for (std::size_t f = 0; f < raw.frames.size(); ++f)
+    raw.frames[f].averaged = first + static_cast<std::ptrdiff_t>(f) * raw.frames[f].pixels();
+  raw.averaged = averaged;
 }
 
-RawArray view_raw(const py::array& array, bool is_planar, int needed) {
+}  // namespace
+
+std::vector<py::ssize_t> RawArray::plane_shape() const {
+  if (!is_stack) return {height, width};
+  return {static_cast<py::ssize_t>(frames.size()), height, width};
+}
+
+RawArray view_raw(const py::array& array, bool is_planar, int needed, const py::object& averaged) {
   const py::ssize_t axes = array.ndim();
   const char* const shapes = is_planar ? "(K, H, W) or (F, K, H, W)" : "(H, W, K) or (F, H, W, K)";
   if (axes != 3 && axes != 4) refuse("raw", "shape " + shape_of(array), shapes);
@@ -205,6 +214,7 @@ RawArray view_raw(const py::array& array, bool is_planar, int needed) {
     view.data = data_of(array, raw.is_stack ? f * array.strides(0) : 0);
     raw.frames.push_back(view);
   }
+  if (!averaged.is_none()) set_averaged(raw, Floats::ensure(averaged));
   return raw;
 }
 

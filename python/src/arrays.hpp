@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tofsmith/core/image.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith::python {
 
@@ -47,6 +48,10 @@ Image<float> to_image(const py::object& values, const char* argument);
 /// Returns and removes an image from a dict of options; empty if there is none.
 Image<float> taken_image(const py::dict& options, const char* name);
 
+/// Creates a scene from its planes by name, each (H, W) or None.
+/// @throws std::invalid_argument naming the invalid plane
+SceneImage scene_of(const py::dict& planes);
+
 /// Converts an array (F, H, W, K) to frames; None to no frames.
 /// @throws std::invalid_argument naming the argument unless it has four axes
 RawFrames to_raw_frames(const py::object& values, const char* argument);
@@ -66,19 +71,18 @@ struct RawArray {
   bool is_stack = false;  ///< has an axis of frames
   int height = 0;
   int width = 0;
+  Floats averaged = {};  ///< to which the frames refer; may be empty
 
   /// (H, W) or (F, H, W).
   std::vector<py::ssize_t> plane_shape() const;
-  /// Sets the number of measurements averaged in each pixel.
-  /// @param averaged  of plane_shape(), each > 0; must outlive the frames
-  /// @throws std::invalid_argument for another shape or numbers that are not > 0
-  void set_averaged(const Floats& averaged);
 };
 
 /// @param array   float32, float64, uint16 or uint8; shape (H, W, K) or (F, H, W, K), or planar
 ///                (K, H, W) or (F, K, H, W)
 /// @param needed  K of the decoder
-/// @throws std::invalid_argument for any other type or shape
-RawArray view_raw(const py::array& array, bool is_planar, int needed);
+/// @param averaged  number of measurements averaged in each pixel, of plane_shape(); None: one
+/// @throws std::invalid_argument for any other type or shape, and for averages that are not > 0
+RawArray view_raw(const py::array& array, bool is_planar, int needed,
+                  const py::object& averaged = py::none());
 
 }  // namespace tofsmith::python

@@ -143,11 +143,7 @@ void bind_calibrate(py::module_& module) {
       .def("fields", &response_dict)
       .def("camera", &responding)
       .def("write_camera", &write_responding)
-      .def("write_report", [](const CalibratedResponse& found, const std::string& path,
-                              const std::string& source, bool overwrite) {
-        write_file_atomically(path, render(response_report(found, source, "")),
-                              policy_of(overwrite));
-      });
+      .def("write_report", writing(&response_report));
   module.def("calibrate_impulse_response", &calibrate_response);
   py::class_<PhotonTransfer>(module, "PhotonTransfer")
       .def("fields", &noise_dict)
@@ -155,7 +151,7 @@ void bind_calibrate(py::module_& module) {
                         const Camera& camera) { return with_noise(camera, found); })
       .def("write_report",
            [](const PhotonTransfer& found, const std::string& path, bool overwrite) {
-             write_file_atomically(path, render(noise_report(found, "")), policy_of(overwrite));
+             write_page(path, noise_report(found, ""), overwrite);
            });
   module.def("photon_transfer", &measure_noise);
 }

@@ -3,38 +3,13 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
-#include "capture_arguments.hpp"
+#include "options.hpp"
 #include "progress.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"
 
 namespace tofsmith::python {
-
-SceneImage scene_of(const py::dict& planes) {
-  const Image<float> depth_m = to_image(planes["depth_m"], "depth_m");
-  if (depth_m.empty())
-    refuse("depth_m",
-           "shape (" + std::to_string(depth_m.height) + ", " + std::to_string(depth_m.width) + ")",
-           "(H, W) with at least one pixel");
-  SceneImage scene(depth_m.height, depth_m.width);
-  scene.depth_m = depth_m;
-  const auto take = [&](const char* name, Image<float>& plane) {
-    const py::object values = planes[name];
-    if (values.is_none()) return;
-    plane = to_image(values, name);
-    if (plane.height != depth_m.height || plane.width != depth_m.width)
-      refuse(name,
-             "shape (" + std::to_string(plane.height) + ", " + std::to_string(plane.width) + ")",
-             "shape (" + std::to_string(depth_m.height) + ", " + std::to_string(depth_m.width) +
-                 ") as of depth_m");
-  };
-  take("albedo", scene.albedo);
-  take("cosine", scene.cosine);
-  take("ambient_scale", scene.ambient_scale);
-  scene.validate();
-  return scene;
-}
 
 namespace {
 

@@ -87,9 +87,7 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
             std::optional<double> max_depth_m, const BoundFilter* filter,
             const py::object& callback) {
   const DecodingTable& table = backend.decoder().table();
-  RawArray raw = view_raw(raw_numbers, is_planar, table.measurements());
-  const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
-  if (!averaged.is_none()) raw.set_averaged(means);
+  const RawArray raw = view_raw(raw_numbers, is_planar, table.measurements(), averaged);
   const Planes planes(arrays, raw);
   PlaneCorrections corrections{maps_of(delay_offset_m, gain, raw), std::nullopt,
                                depth_limits(table, min_depth_m, max_depth_m)};
@@ -136,6 +134,13 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   else if (!request.view_deg)
     request.lens = to_optional_lens(lens);
   return request;
+}
+
+template <typename Statuses>
+std::map<std::string, int> values_by_name(const Statuses& statuses) {
+  std::map<std::string, int> values;
+  for (const auto status : statuses) values.emplace(name_of(status), static_cast<int>(status));
+  return values;
 }
 
 std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
@@ -284,28 +289,10 @@ void bind_decode(py::module_& module) {
       .def("decode_recording", &decode_a_recording)
       .def("decode_stream", &decode_a_stream)
       .def("decode_depth_bins", &decode_depth_bins);
-  module.def("decode_methods", [] {
-    std::vector<std::string> names;
-    for (const DecodeMethod method : all_decode_methods) names.emplace_back(name_of(method));
-    return names;
-  });
-  module.def("mixed_pixels", [] {
-    std::vector<std::string> names;
-    for (const MixedPixels mixed : all_mixed_pixels) names.emplace_back(name_of(mixed));
-    return names;
-  });
-  module.def("pixel_statuses", [] {
-    std::map<std::string, int> values;
-    for (const PixelStatus status : all_pixel_statuses)
-      values.emplace(name_of(status), static_cast<int>(status));
-    return values;
-  });
-  module.def("return_statuses", [] {
-    std::map<std::string, int> values;
-    for (const ReturnStatus status : all_return_statuses)
-      values.emplace(name_of(status), static_cast<int>(status));
-    return values;
-  });
+  module.def("decode_methods", [] { return words_of(DecodeMethod{}); });
+  module.def("mixed_pixels", [] { return words_of(MixedPixels{}); });
+  module.def("pixel_statuses", [] { return values_by_name(all_pixel_statuses); });
+  module.def("return_statuses", [] { return values_by_name(all_return_statuses); });
 }
 
 }  // namespace tofsmith::python

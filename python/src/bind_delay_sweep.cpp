@@ -259,12 +259,10 @@ CalibratedStrayLight calibrate_stray(const py::object& frames, const py::object&
 }
 
 py::dict stray_dict(const CalibratedStrayLight& found) {
-  py::list shares;
-  for (const Estimate& share : found.share) shares.append(pair_of(share));
   py::dict dict;
   dict["kernel"] = adopt(Image<float>(found.kernel));
   dict["radius_px"] = found.radius_px;
-  dict["share"] = shares;
+  dict["share"] = pairs_of(found.share);
   dict["total"] = pair_of(found.total);
   dict["target_pixels"] = found.target_pixels;
   dict["pixels"] = found.pixels;
@@ -293,10 +291,7 @@ void bind_delay_sweep(py::module_& module) {
            [](const CalibratedDepth& found, const std::string& path, bool overwrite) {
              write_calibrated_table(path, found.table, policy_of(overwrite));
            })
-      .def("write_report", [](const CalibratedDepth& found, const std::string& path,
-                              const std::string& source, bool overwrite) {
-        write_file_atomically(path, render(depth_report(found, source, "")), policy_of(overwrite));
-      });
+      .def("write_report", writing(&depth_report));
   module.def("calibrate_stray_light", &calibrate_stray);
   py::class_<CalibratedStrayLight>(module, "CalibratedStrayLight")
       .def("fields", &stray_dict)
@@ -304,11 +299,7 @@ void bind_delay_sweep(py::module_& module) {
            [](const CalibratedStrayLight& found, const std::string& path, bool overwrite) {
              write_float_image(path, found.kernel, "kernel", policy_of(overwrite));
            })
-      .def("write_report", [](const CalibratedStrayLight& found, const std::string& path,
-                              const std::string& source, bool overwrite) {
-        write_file_atomically(path, render(stray_light_report(found, source, "")),
-                              policy_of(overwrite));
-      });
+      .def("write_report", writing(&stray_light_report));
   module.def("calibrate_temperature", &calibrate_drift);
   py::class_<TemperatureDrift>(module, "TemperatureDrift")
       .def("fields", &drift_dict)
@@ -317,11 +308,7 @@ void bind_delay_sweep(py::module_& module) {
               std::optional<double> reference_c, std::optional<double> sensor_reference_c) {
              return with_temperature(camera, found, reference_c, sensor_reference_c);
            })
-      .def("write_report", [](const TemperatureDrift& found, const std::string& path,
-                              const std::string& source, bool overwrite) {
-        write_file_atomically(path, render(temperature_report(found, source, "")),
-                              policy_of(overwrite));
-      });
+      .def("write_report", writing(&temperature_report));
   module.def("read_delay_sweep", &read_sweep);
   py::class_<CalibratedCorrelation>(module, "CalibratedCorrelation")
       .def("fields", &correlation_dict)
@@ -336,8 +323,7 @@ void bind_delay_sweep(py::module_& module) {
   module.def("write_correlation_report",
              [](const std::string& path, const CalibratedCorrelation& found,
                 const std::vector<IdealCodeFit>& fits, const std::string& source, bool overwrite) {
-               write_file_atomically(path, render(correlation_report(found, fits, source, "")),
-                                     policy_of(overwrite));
+               write_page(path, correlation_report(found, fits, source, ""), overwrite);
              });
   module.def("calibrate_correlation", &calibrate);
   module.def("write_pixel_map", [](const std::string& path, const py::object& map,

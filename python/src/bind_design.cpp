@@ -34,7 +34,7 @@ py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
   dict["code"] = candidate.code;
   dict["method"] = candidate.method;
   dict["ranking_error_m"] = ranking_error_m;
-  dict["error"] = report_dict(candidate.error);
+  dict["error"] = fields_dict(candidate.error);
   dict["rotation_bin"] = candidate.rotation_bin;
   dict["iterations"] = candidate.iterations;
   dict["seconds"] = candidate.seconds;
@@ -72,15 +72,13 @@ void write_design(const FinishedDesign& design, const std::string& path, bool ov
   const py::gil_scoped_release release;
   const DesignDirectory directory(path);
   directory.write(design.camera, design.result, design.options, policy_of(overwrite));
-  write_file_atomically(directory.path() / "report.html",
-                        render(design_report(read_designed_directory(directory.path()), "")),
-                        policy_of(overwrite));
+  write_page(directory.path() / "report.html",
+             design_report(read_designed_directory(directory.path()), ""), overwrite);
 }
 
 void write_design_report(const FinishedDesign& design, const std::string& path, bool overwrite) {
   const py::gil_scoped_release release;
-  write_file_atomically(path, render(design_report(design.camera, design.result, std::nullopt, "")),
-                        policy_of(overwrite));
+  write_page(path, design_report(design.camera, design.result, std::nullopt, ""), overwrite);
 }
 
 py::dict design_dict(const Camera& camera, const py::dict& values,
@@ -149,9 +147,8 @@ py::dict requirements_dict(const Camera& camera, const py::dict& values,
 void write_found(const FoundRequirements& asked, const std::string& path, bool overwrite) {
   const py::gil_scoped_release release;
   write_requirements(path, asked.camera, asked.found, asked.options, policy_of(overwrite));
-  write_file_atomically(std::filesystem::path(path) / "report.html",
-                        render(requirements_report(asked.camera, asked.found, asked.options, "")),
-                        policy_of(overwrite));
+  write_page(std::filesystem::path(path) / "report.html",
+             requirements_report(asked.camera, asked.found, asked.options, ""), overwrite);
 }
 
 py::list atlas_list() {
@@ -171,30 +168,6 @@ py::list atlas_list() {
   }
   return entries;
 }
-
-}  // namespace
-
-void bind_design(py::module_& module) {
-  py::class_<TargetSet>(module, "TargetSet");
-  py::class_<FinishedDesign>(module, "FinishedDesign")
-      .def("write", &write_design)
-      .def("write_report", &write_design_report);
-  module.def("targets_of", &targets_of);
-  module.def("load_target", &load_target);
-  module.def("targets_from_table",
-             [](const std::string& name, const Doubles& table, int samples, bool normalize) {
-               return targets_from_table(name, to_matrix(table, "target"), samples, normalize);
-             });
-  module.def("suggested_exposures", [](const Camera& camera, const std::string& word) {
-    return suggested_exposures(camera, parse_design_method(word));
-  });
-  module.def("design", &design_dict);
-  module.def("atlas", &atlas_list);
-  py::class_<FoundRequirements>(module, "FoundRequirements").def("write", &write_found);
-  module.def("find_requirements", &requirements_dict);
-}
-
-namespace {
 
 FactorizeOptions factorize_options(const py::dict& values) {
   FactorizeOptions options;
@@ -261,7 +234,24 @@ py::array_t<double> output_of_arm(const Waveform& waveform, const Camera& camera
 
 }  // namespace
 
-void bind_factorize(py::module_& module) {
+void bind_design(py::module_& module) {
+  py::class_<TargetSet>(module, "TargetSet");
+  py::class_<FinishedDesign>(module, "FinishedDesign")
+      .def("write", &write_design)
+      .def("write_report", &write_design_report);
+  module.def("targets_of", &targets_of);
+  module.def("load_target", &load_target);
+  module.def("targets_from_table",
+             [](const std::string& name, const Doubles& table, int samples, bool normalize) {
+               return targets_from_table(name, to_matrix(table, "target"), samples, normalize);
+             });
+  module.def("suggested_exposures", [](const Camera& camera, const std::string& word) {
+    return suggested_exposures(camera, parse_design_method(word));
+  });
+  module.def("design", &design_dict);
+  module.def("atlas", &atlas_list);
+  py::class_<FoundRequirements>(module, "FoundRequirements").def("write", &write_found);
+  module.def("find_requirements", &requirements_dict);
   module.def("number_of_targets",
              [](const TargetSet& targets) { return targets.measurements.size(); });
   module.def("factorize", &factorize_target);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <array>
 #include <filesystem>
 
 #include "bindings.hpp"
@@ -46,19 +47,6 @@ py::tuple write(const CodeSet& code, const Camera& camera, const std::string& ou
   return py::make_tuple(exported.actual, files, exported.manifest, exported.notes);
 }
 
-}  // namespace
-
-void bind_export(py::module_& module) {
-  module.def("waveform_formats", [] {
-    py::list formats;
-    for (const WaveformFormat& format : waveform_formats()) formats.append(format_dict(format));
-    return formats;
-  });
-  module.def("export_waveforms", &write);
-}
-
-namespace {
-
 /// Selects the waveforms of a code, and sets up the generator.
 struct UploadOptions {
   UploadSelection selection;
@@ -89,19 +77,8 @@ UploadScript script(const CodeSet& code, const Camera& camera, const std::string
 }
 
 const char* name_of(UploadStep::Answer answer) {
-  switch (answer) {
-    case UploadStep::Answer::none:
-      return "none";
-    case UploadStep::Answer::line:
-      return "line";
-    case UploadStep::Answer::block:
-      return "block";
-    case UploadStep::Answer::arb_file:
-      return "arb_file";
-    case UploadStep::Answer::wave_data:
-      return "wave_data";
-  }
-  return "none";
+  static constexpr std::array names = {"none", "line", "block", "arb_file", "wave_data"};
+  return names.at(static_cast<std::size_t>(answer));
 }
 
 void bind_model(py::module_& module) {
@@ -202,7 +179,13 @@ void bind_script(py::module_& module) {
 
 }  // namespace
 
-void bind_upload_script(py::module_& module) {
+void bind_export(py::module_& module) {
+  module.def("waveform_formats", [] {
+    py::list formats;
+    for (const WaveformFormat& format : waveform_formats()) formats.append(format_dict(format));
+    return formats;
+  });
+  module.def("export_waveforms", &write);
   bind_model(module);
   bind_channel(module);
   bind_step(module);

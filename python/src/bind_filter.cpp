@@ -71,9 +71,7 @@ template <typename FilterFrame>
 py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measurement_count,
                         const py::object& averaged_before, const py::object& callback,
                         bool gives_stacks, const FilterFrame& filter) {
-  RawArray raw = view_raw(raw_numbers, is_planar, measurement_count);
-  const Floats means = averaged_before.is_none() ? Floats() : Floats::ensure(averaged_before);
-  if (!averaged_before.is_none()) raw.set_averaged(means);
+  const RawArray raw = view_raw(raw_numbers, is_planar, measurement_count, averaged_before);
   FilteredFrames filtered(measurement_count);
   without_gil(callback, [&](const Progress& progress) {
     const ProgressParts parts(progress, raw.frames.size());
@@ -120,9 +118,7 @@ py::tuple end_filter(TimeFilter& filter, const py::object& callback) {
 
 py::tuple merge_frames(const DecodingTable& table, const py::array& raw_numbers, bool is_planar,
                        const py::object& averaged, const std::vector<double>& exposures) {
-  RawArray raw = view_raw(raw_numbers, is_planar, table.measurements());
-  const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
-  if (!averaged.is_none()) raw.set_averaged(means);
+  const RawArray raw = view_raw(raw_numbers, is_planar, table.measurements(), averaged);
   MergedExposures merged;
   {
     const py::gil_scoped_release release;
@@ -179,12 +175,7 @@ void bind_filter(py::module_& module) {
       .def("forget", &TimeFilter::forget);
   module.def("merge_exposures", &merge_frames);
   module.def("without_stray_light", &without_stray_light);
-  module.def("filter_strengths", [] {
-    std::vector<std::string> names;
-    for (const FilterStrength strength : all_filter_strengths)
-      names.emplace_back(name_of(strength));
-    return names;
-  });
+  module.def("filter_strengths", [] { return words_of(FilterStrength{}); });
 }
 
 }  // namespace tofsmith::python

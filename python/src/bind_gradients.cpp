@@ -19,22 +19,22 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Shape = std::vector<py::ssize_t>;
 
-/// Returns matrix or vector b of an array.
+/// Returns matrix, vector or numbers b of an array.
 Eigen::Map<const RowMajor> matrix_of(const Doubles& values, py::ssize_t b) {
   return {values.data() + b * values.shape(1) * values.shape(2), values.shape(1), values.shape(2)};
 }
 Eigen::Map<const Eigen::VectorXd> vector_of(const Doubles& values, py::ssize_t b) {
   return {values.data() + b * values.shape(1), values.shape(1)};
 }
+template <typename Array>
+std::span<const typename Array::value_type> span_of(const Array& values, py::ssize_t b) {
+  const auto size = static_cast<std::size_t>(values.size() / values.shape(0));
+  return {values.data() + static_cast<std::size_t>(b) * size, size};
+}
 /// Requires exactly this type, because threads without the interpreter's lock must not convert
 /// arrays.
 template <typename Value>
 using Measured = py::array_t<Value, py::array::c_style>;
-template <typename Value>
-std::span<const Value> span_of(const Measured<Value>& values, py::ssize_t b) {
-  const auto size = static_cast<std::size_t>(values.size() / values.shape(0));
-  return {values.data() + static_cast<std::size_t>(b) * size, size};
-}
 
 /// Writes the result for code b into an array.
 template <typename Value, typename Matrix>
@@ -104,11 +104,7 @@ void for_each_code(py::ssize_t codes, const Work& work) {
 
 PixelLight light_of(const Doubles& depth_bin, const Doubles& signal, const Doubles& ambient,
                     py::ssize_t b) {
-  const auto of = [&](const Doubles& values) {
-    const auto size = static_cast<std::size_t>(values.shape(1));
-    return std::span<const double>(values.data() + static_cast<std::size_t>(b) * size, size);
-  };
-  return {of(depth_bin), of(signal), of(ambient)};
+  return {span_of(depth_bin, b), span_of(signal, b), span_of(ambient, b)};
 }
 
 TableTuple measure(const CodeGradients& steps, const Doubles& modulation,
@@ -176,8 +172,7 @@ py::tuple pull_back_electrons(const CodeGradients& steps, const TableTuple& tabl
 
 std::span<const double> truth_of(const std::optional<Doubles>& true_bin, py::ssize_t b) {
   if (!true_bin) return {};
-  const auto size = static_cast<std::size_t>(true_bin->shape(1));
-  return {true_bin->data() + static_cast<std::size_t>(b) * size, size};
+  return span_of(*true_bin, b);
 }
 
 template <typename Value>
@@ -188,8 +183,7 @@ Doubles decoded(const CodeGradients& steps, const TableTuple& table,
   Doubles answers(Shape{tables.codes(), electrons.shape(1)});
   double* const data = answers.mutable_data();
   for_each_code(tables.codes(), [&](std::int64_t b) {
-    const SoftDecoding decoding{
-        light_of(temperature_e2, temperature_e2, temperature_e2, b).depth_bin, circular};
+    const SoftDecoding decoding{span_of(temperature_e2, b), circular};
     const std::vector<double> of_code =
         true_bin
             ? steps.soft_error(tables.at(b), span_of(electrons, b), decoding, truth_of(true_bin, b))
@@ -209,10 +203,9 @@ py::tuple pull_back_decoded(const CodeGradients& steps, const TableTuple& table,
   Measured<Value> by_electrons(Shape{electrons.shape(0), electrons.shape(1), electrons.shape(2)});
   Value* const data = by_electrons.mutable_data();
   for_each_code(tables.codes(), [&](std::int64_t b) {
-    const PixelLight light = light_of(temperature_e2, weight, weight, b);
     const DecodedGradient<Value> gradient = steps.pull_back_decoded(
-        tables.at(b), span_of(electrons, b), SoftDecoding{light.depth_bin, circular},
-        truth_of(true_bin, b), light.signal_e_per_s);
+        tables.at(b), span_of(electrons, b), SoftDecoding{span_of(temperature_e2, b), circular},
+        truth_of(true_bin, b), span_of(weight, b));
     made.put_table(b, gradient.table);
     std::copy(gradient.electrons.begin(), gradient.electrons.end(),
               data + b * electrons.shape(1) * electrons.shape(2));

@@ -28,63 +28,19 @@ Options options_of(const py::dict& values) {
   return options;
 }
 
-}  // namespace
-
-void bind_simulate(py::module_& module) {
-  module.def("evaluate", [](const CodeSet& code, const Camera& camera, const py::dict& values,
-                            const py::object& callback) {
-    const EvaluateOptions options = options_of<EvaluateOptions>(values);
-    return report_dict(without_gil(callback, [&](const Progress& progress) {
-      return evaluate(code, camera, options, progress);
+/// Binds a function of a code on a camera, whose report becomes a dict.
+template <typename Options, typename Report>
+auto reporting(Report (*report_of_code)(const CodeSet&, const Camera&, const Options&,
+                                        const Progress&),
+               py::dict (*to_dict)(const Report&)) {
+  return [=](const CodeSet& code, const Camera& camera, const py::dict& values,
+             const py::object& callback) {
+    const Options options = options_of<Options>(values);
+    return to_dict(without_gil(callback, [&](const Progress& progress) {
+      return report_of_code(code, camera, options, progress);
     }));
-  });
-  module.def("best_rotation", [](const CodeSet& code, const Camera& camera, const py::dict& values,
-                                 const py::object& callback) {
-    const EvaluateOptions options = options_of<EvaluateOptions>(values);
-    BestRotation best = without_gil(callback, [&](const Progress& progress) {
-      return best_rotation(code, camera, options, progress);
-    });
-    return py::make_tuple(best.rotation_bin, adopt(std::move(best.linear_geometric_mean_m)));
-  });
-  module.def("robustness", [](const CodeSet& code, const Camera& camera, const py::dict& values,
-                              const py::object& callback) {
-    const RobustnessOptions options = options_of<RobustnessOptions>(values);
-    return robustness_dict(without_gil(callback, [&](const Progress& progress) {
-      return robustness(code, camera, options, progress);
-    }));
-  });
-  module.def("motion_error", [](const CodeSet& code, const Camera& camera, double velocity_m_per_s,
-                                const py::dict& values, const py::object& callback) {
-    const EvaluateOptions options = options_of<EvaluateOptions>(values);
-    return fields_dict(without_gil(callback, [&](const Progress& progress) {
-      return motion_error(code, camera, velocity_m_per_s, options, progress);
-    }));
-  });
-  module.def("interference_error", [](const CodeSet& code, const Camera& camera,
-                                      const py::dict& values, const py::object& callback) {
-    const EvaluateOptions options = options_of<EvaluateOptions>(values);
-    return fields_dict(without_gil(callback, [&](const Progress& progress) {
-      return interference_error(code, camera, options, progress);
-    }));
-  });
-  module.def("generator_loss", [](const CodeSet& code, const Camera& camera, const py::dict& values,
-                                  const py::object& callback) {
-    const EvaluateOptions options = options_of<EvaluateOptions>(values);
-    return loss_dict(without_gil(callback, [&](const Progress& progress) {
-      return generator_loss(code, camera, options, progress);
-    }));
-  });
-  module.def("table_depth_error_m",
-             [](const DecodingTable& table, double signal, double ambient_e_per_s,
-                std::int64_t trials, std::uint64_t seed) {
-               const Estimate error_m = without_gil(py::none(), [&](const Progress&) {
-                 return table_depth_error_m(table, {signal, ambient_e_per_s}, trials, seed);
-               });
-               return py::make_tuple(error_m.value, error_m.standard_error);
-             });
+  };
 }
-
-namespace {
 
 /// Returns mae_m at a light level, with the signal scaled uniformly in (0, 1) if requested.
 template <typename Bound>
@@ -97,7 +53,35 @@ double mae_m(const Bound& bound, double signal_e_per_s, double ambient_e_per_s,
 
 }  // namespace
 
-void bind_bounds(py::module_& module) {
+void bind_simulate(py::module_& module) {
+  module.def("evaluate", reporting(&evaluate, &fields_dict<DepthErrorReport>));
+  module.def("best_rotation", [](const CodeSet& code, const Camera& camera, const py::dict& values,
+                                 const py::object& callback) {
+    const EvaluateOptions options = options_of<EvaluateOptions>(values);
+    BestRotation best = without_gil(callback, [&](const Progress& progress) {
+      return best_rotation(code, camera, options, progress);
+    });
+    return py::make_tuple(best.rotation_bin, adopt(std::move(best.linear_geometric_mean_m)));
+  });
+  module.def("robustness", reporting(&robustness, &robustness_dict));
+  module.def("motion_error", [](const CodeSet& code, const Camera& camera, double velocity_m_per_s,
+                                const py::dict& values, const py::object& callback) {
+    const EvaluateOptions options = options_of<EvaluateOptions>(values);
+    return fields_dict(without_gil(callback, [&](const Progress& progress) {
+      return motion_error(code, camera, velocity_m_per_s, options, progress);
+    }));
+  });
+  module.def("interference_error",
+             reporting(&interference_error, &fields_dict<InterferenceReport>));
+  module.def("generator_loss", reporting(&generator_loss, &loss_dict));
+  module.def("table_depth_error_m",
+             [](const DecodingTable& table, double signal, double ambient_e_per_s,
+                std::int64_t trials, std::uint64_t seed) {
+               const Estimate error_m = without_gil(py::none(), [&](const Progress&) {
+                 return table_depth_error_m(table, {signal, ambient_e_per_s}, trials, seed);
+               });
+               return py::make_tuple(error_m.value, error_m.standard_error);
+             });
   py::class_<CramerRaoBound>(module, "CramerRaoBound")
       .def(py::init([](const CodeSet& code, const Camera& camera, bool of_variance_too) {
         return CramerRaoBound(

@@ -118,7 +118,6 @@ class BoundSweepRun {
       keys_ = list_.keys(progress);
       store_.emplace(SweepStore::open(path));
       queue_.emplace(list_, keys_, *store_, SweepShard{}, progress);
-      return 0;
     });
   }
 

@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "bindings.hpp"
-#include "capture_arguments.hpp"
 #include "lens.hpp"
+#include "options.hpp"
 #include "progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/sweep/training_set.hpp"

@@ -18,9 +18,7 @@ void bind_scene(py::module_& module);
 void bind_capture(py::module_& module);
 void bind_simulate(py::module_& module);
 void bind_multipath(py::module_& module);
-void bind_bounds(py::module_& module);
 void bind_design(py::module_& module);
-void bind_factorize(py::module_& module);
 void bind_gradients(py::module_& module);
 void bind_files(py::module_& module);
 void bind_export(py::module_& module);
@@ -28,8 +26,6 @@ void bind_sweep(py::module_& module);
 void bind_figures(py::module_& module);
 void bind_calibrate(py::module_& module);
 void bind_delay_sweep(py::module_& module);
-void bind_reports(py::module_& module);
 void bind_training_set(py::module_& module);
-void bind_upload_script(py::module_& module);
 
 }  // namespace tofsmith::python

@@ -85,9 +85,7 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_capture(module);
   bind_simulate(module);
   bind_multipath(module);
-  bind_bounds(module);
   bind_design(module);
-  bind_factorize(module);
   bind_gradients(module);
   bind_files(module);
   bind_export(module);
@@ -95,9 +93,7 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_figures(module);
   bind_calibrate(module);
   bind_delay_sweep(module);
-  bind_reports(module);
   bind_training_set(module);
-  bind_upload_script(module);
 }
 
 }  // namespace tofsmith::python

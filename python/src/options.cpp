@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith::python {
 
 std::string shown(py::handle value) {
-  std::string text = py::str(py::type::handle_of(value).attr("__name__"));
   std::string content = py::repr(value);
   constexpr std::size_t longest = 60;
   if (content.size() > longest) content = content.substr(0, longest) + "..";
-  text += " ";
-  text += content;
-  return text;
+  return std::string(py::str(py::type::handle_of(value).attr("__name__"))) + " " + content;
 }
 
 OptionReader::OptionReader(const py::dict& values, std::string owner)
@@ -49,11 +49,7 @@ void OptionReader::finish() const {
   for (const auto& entry : values_) {
     const std::string name = py::str(entry.first);
     const std::string near = nearest_word(name, known_);
-    std::string needs;
-    for (const std::string& word : known_) {
-      needs += needs.empty() ? "one of " : ", ";
-      needs += word;
-    }
+    std::string needs = fmt::format("one of {}", fmt::join(known_, ", "));
     if (!near.empty()) needs.append("; did you mean ").append(near).append("?");
     refuse(owner_.empty() ? "options" : owner_, "the unknown name '" + name + "'", needs);
   }

@@ -126,34 +126,22 @@ class OptionReader {
  private:
   template <typename Value>
   void read(const char* name, Value& field) {
+    using Single = SingleValue<Value>;
     if constexpr (HasFields<Value>) {
       read_options(table(name), full_name(name), field);
-    } else if constexpr (HasWords<Value>) {
+    } else if constexpr (is_optional<Value> && HasFields<Single>) {
+      const py::dict given = table(name);
+      if (!given.empty()) read_options(given, full_name(name), field.emplace());
+    } else if constexpr (is_list<Value> && HasWords<Single>) {
+      std::vector<std::string> words;
+      value(name, words);
+      for (const std::string& text : words)
+        field.push_back(parse_word<Single>(full_name(name), text));
+    } else if constexpr (HasWords<Single>) {
       word(name, field,
-           [&](const std::string& text) { return parse_word<Value>(full_name(name), text); });
+           [&](const std::string& text) { return parse_word<Single>(full_name(name), text); });
     } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
       path(name, field);
-    } else if constexpr (is_optional<Value>) {
-      using Content = typename Value::value_type;
-      if constexpr (HasFields<Content>) {
-        const py::dict given = table(name);
-        if (!given.empty()) read_options(given, full_name(name), field.emplace());
-      } else if constexpr (HasWords<Content>) {
-        word(name, field,
-             [&](const std::string& text) { return parse_word<Content>(full_name(name), text); });
-      } else {
-        value(name, field);
-      }
-    } else if constexpr (is_list<Value>) {
-      using Item = typename Value::value_type;
-      if constexpr (HasWords<Item>) {
-        std::vector<std::string> words;
-        value(name, words);
-        for (const std::string& text : words)
-          field.push_back(parse_word<Item>(full_name(name), text));
-      } else {
-        value(name, field);
-      }
     } else {
       value(name, field);
     }

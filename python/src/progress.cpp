@@ -4,14 +4,6 @@
 
 namespace tofsmith::python {
 
-Progress ProgressBridge::progress() {
-  return [this](double fraction, std::string_view step) { return call(fraction, step); };
-}
-
-void ProgressBridge::rethrow() const {
-  if (error_) std::rethrow_exception(error_);
-}
-
 bool ProgressBridge::call(double fraction, std::string_view step) {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_ && fraction < 1.0) return true;

@@ -24,9 +24,13 @@ namespace py = pybind11;
 class ProgressBridge {
  public:
   explicit ProgressBridge(py::object callback) : callback_(std::move(callback)) {}
-  Progress progress();
+  Progress progress() {
+    return [this](double fraction, std::string_view step) { return call(fraction, step); };
+  }
   /// Rethrows an exception of Python that was raised during the work.
-  void rethrow() const;
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
 
  private:
   bool call(double fraction, std::string_view step);

@@ -6,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "field_dicts.hpp"
+#include "options.hpp"
 
 namespace tofsmith::python {
 
@@ -24,17 +25,11 @@ py::dict impulse_response_dict(const ImpulseResponse& response) {
   return dict;
 }
 
-py::dict report_dict(const DepthErrorReport& report) { return fields_dict(report); }
-
-DepthErrorReport report_of(const py::dict& values) {
-  return fields_from_dict<DepthErrorReport>(values);
-}
-
 py::dict loss_dict(const GeneratorLoss& loss) {
   py::dict dict;
-  dict["nominal"] = report_dict(loss.nominal);
-  dict["actual"] = report_dict(loss.actual);
-  dict["uncalibrated"] = report_dict(loss.uncalibrated);
+  dict["nominal"] = fields_dict(loss.nominal);
+  dict["actual"] = fields_dict(loss.actual);
+  dict["uncalibrated"] = fields_dict(loss.uncalibrated);
   dict["correlation_change"] = adopt(std::vector<double>(loss.correlation_change));
   return dict;
 }
@@ -59,6 +54,10 @@ py::dict operating_multipath_dict(const OperatingMultipathReport& report) {
   add("two_return_", report.two_return.value_or(OperatingMultipathError{}),
       report.two_return.has_value());
   return dict;
+}
+
+void write_page(const std::filesystem::path& path, const Page& page, bool overwrite) {
+  write_file_atomically(path, render(page), policy_of(overwrite));
 }
 
 }  // namespace tofsmith::python

@@ -4,7 +4,11 @@
 
 #include <pybind11/pybind11.h>
 
+#include <filesystem>
+#include <string>
+
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/report/page.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -16,13 +20,21 @@ pybind11::tuple pair_of(const Estimate& estimate);
 /// Returns a dict without the fields that the kind does not have.
 pybind11::dict impulse_response_dict(const ImpulseResponse& response);
 
-/// Converts results to dicts of numbers and arrays, with the names of the C++ fields; values per
+/// Convert results to dicts of numbers and arrays, with the names of the C++ fields; values per
 /// operating point become arrays with one entry per point.
-pybind11::dict report_dict(const DepthErrorReport& report);
-/// Inverse of report_dict(). @throws pybind11 errors for missing entries or wrong types
-DepthErrorReport report_of(const pybind11::dict& values);
 pybind11::dict loss_dict(const GeneratorLoss& loss);
 pybind11::dict robustness_dict(const RobustnessReport& report);
 pybind11::dict operating_multipath_dict(const OperatingMultipathReport& report);
+
+/// Renders a page to a file.
+void write_page(const std::filesystem::path& path, const Page& page, bool overwrite);
+
+/// Binds the report of a calibration, as a method with the arguments path, source and overwrite.
+template <typename Found>
+auto writing(Page (*make_page)(const Found& found, const std::string& source,
+                               const std::string& command_line)) {
+  return [make_page](const Found& found, const std::string& path, const std::string& source,
+                     bool overwrite) { write_page(path, make_page(found, source, ""), overwrite); };
+}
 
 }  // namespace tofsmith::python

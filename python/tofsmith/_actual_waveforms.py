@@ -10,7 +10,7 @@ from typing import Optional
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray
-from ._code import CodeLike, code_of
+from ._code import CodeLike, handles_of
 from ._waveform import Waveform
 
 
@@ -68,8 +68,7 @@ def generator_report(code: CodeLike, camera: CameraLike) -> list[GeneratorReport
     ValueError
         If the code does not fit the camera.
     """
-    camera = camera_of(camera)
-    reports = _tofsmith.generator_report(code_of(code, camera)._handle, camera._handle)
+    reports = _tofsmith.generator_report(*handles_of(code, camera))
     return [GeneratorReport(**report) for report in reports]
 
 
@@ -93,8 +92,7 @@ def actual_waveforms(code: CodeLike, camera: CameraLike) -> tuple[list[Waveform]
     ValueError
         If the generator cannot generate a pulse of a modulation.
     """
-    camera = camera_of(camera)
-    arms = _tofsmith.actual_waveforms(code_of(code, camera)._handle, camera._handle)
+    arms = _tofsmith.actual_waveforms(*handles_of(code, camera))
     modulation, demodulation = ([Waveform._of(handle) for handle in arm] for arm in arms)
     return modulation, demodulation
 

@@ -176,8 +176,12 @@ class Camera:
 
     @cached_property
     def _fields(self) -> dict[str, Any]:
-        fields: dict[str, Any] = json.loads(self._handle.to_json())
-        return fields
+        return json.loads(self._handle.to_json())
+
+    def _part(self, table: str, part: Any) -> dict[str, Any]:
+        """Returns the keys of a table that are attributes of a class."""
+        values = self._fields.get(table, {})
+        return {key: values[key] for key in part.__dataclass_fields__ if key in values}
 
     @property
     def name(self) -> str:
@@ -201,15 +205,13 @@ class Camera:
 
     @cached_property
     def light(self) -> Light:
-        light = self._fields["light"]
-        return Light(**_arm({key: light[key] for key in light if key in Light.__dataclass_fields__}))
+        return Light(**_arm(self._part("light", Light)))
 
     @cached_property
     def square_light(self) -> Optional[SquareLight]:
         """Square waves that the chip can generate, if the camera lists them: the other keys of
         `light`."""
-        light = self._fields["light"]
-        square = {key: light[key] for key in SquareLight.__dataclass_fields__ if key in light}
+        square = self._part("light", SquareLight)
         return SquareLight(**_tuples(square)) if square else None
 
     @cached_property
@@ -225,18 +227,14 @@ class Camera:
     @cached_property
     def lens(self) -> Optional[Lens]:
         """The pinhole, if the camera has one."""
-        lens = self._lens_fields(Lens)
+        lens = self._part("lens", Lens)
         return Lens(**_tuples(lens)) if lens else None
 
     @cached_property
     def blur(self) -> Optional[LensBlur]:
         """Blur of the lens, if any: the other keys of `lens`."""
-        blur = self._lens_fields(LensBlur)
+        blur = self._part("lens", LensBlur)
         return LensBlur(**blur) if blur else None
-
-    def _lens_fields(self, part: Any) -> dict[str, Any]:
-        lens = self._fields.get("lens", {})
-        return {key: lens[key] for key in part.__dataclass_fields__ if key in lens}
 
     @cached_property
     def optics(self) -> Optional[Optics]:
@@ -390,8 +388,7 @@ class Camera:
 def _refused(make: Any) -> _tofsmith.Camera:
     """Converts errors in keywords to ValueError, because no file is involved."""
     try:
-        handle: _tofsmith.Camera = make()
-        return handle
+        return make()
     except OSError as error:
         if getattr(error, "place", "").startswith("setting "):
             raise ValueError(str(error)) from None

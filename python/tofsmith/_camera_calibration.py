@@ -18,7 +18,7 @@ from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable, table_of
 from ._option_fields import PhotonTransferOptions
 from ._options import takes
-from ._reports import Estimate
+from ._reports import Estimate, with_estimates
 
 
 @dataclass(frozen=True)
@@ -127,13 +127,8 @@ def photon_transfer(
     dark_frames = None if dark is None else _check.frames(dark, "dark")
     handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, code_handle,
                                        dict(options))
-    fields = handle.fields()
-    for name in ("gain_e_per_dn", "read_noise_e", "black_level_dn", "full_well_e"):
-        fields[name] = None if fields[name] is None else Estimate(*fields[name])
-    fields["points"] = [
-        PhotonTransferPoint(**point | {"variance_dn2": Estimate(*point["variance_dn2"])})
-        for point in fields["points"]
-    ]
+    fields = with_estimates(handle.fields())
+    fields["points"] = [PhotonTransferPoint(**with_estimates(point)) for point in fields["points"]]
     return PhotonTransfer(**fields, _handle=handle)
 
 
@@ -207,9 +202,8 @@ def calibrate_stray_light(
     handle = _tofsmith.calibrate_stray_light(
         _check.frames(frames, "frames"), dark_frames, camera_of(camera)._handle,
         _check.progress(progress))
-    fields = handle.fields()
+    fields = with_estimates(handle.fields())
     fields["share"] = [Estimate(*share) for share in fields["share"]]
-    fields["total"] = Estimate(*fields["total"])
     return CalibratedStrayLight(**fields, _handle=handle)
 
 
@@ -388,9 +382,9 @@ def calibrate_temperature(
     handle = _tofsmith.calibrate_temperature(
         _check.frames(frames, "frames"), degrees, sensor_degrees, code_of(code, camera)._handle,
         camera._handle, _check.progress(progress))
-    fields = _with_estimates(handle.fields())
+    fields = with_estimates(handle.fields())
     if fields["sensor"] is not None:
-        fields["sensor"] = SensorDrift(**_with_estimates(fields["sensor"]))
+        fields["sensor"] = SensorDrift(**with_estimates(fields["sensor"]))
     return TemperatureDrift(**fields, _handle=handle)
 
 
@@ -399,8 +393,3 @@ def _degrees(temperatures: npt.ArrayLike, name: str) -> list[float]:
     if degrees.ndim != 1:
         raise ValueError(f"{name}: got {_check.shown(temperatures)}; needs numbers of shape (F,)")
     return [float(c) for c in degrees]
-
-
-def _with_estimates(fields: dict[str, Any]) -> dict[str, Any]:
-    return {name: Estimate(*value) if isinstance(value, tuple) else value
-            for name, value in fields.items()}

@@ -295,6 +295,12 @@ def code_of(code: CodeLike, camera: CameraLike) -> CodeSet:
     return _check.instance(code, CodeSet, "code")
 
 
+def handles_of(code: CodeLike, camera: CameraLike) -> tuple[_tofsmith.CodeSet, _tofsmith.Camera]:
+    """Returns the compiled objects of a code and its camera."""
+    camera = camera_of(camera)
+    return code_of(code, camera)._handle, camera._handle
+
+
 def list_families() -> list[tuple[str, str, str]]:
     """Returns all built-in families: name pattern, an example, description."""
     return _tofsmith.list_families()

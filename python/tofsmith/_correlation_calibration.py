@@ -19,7 +19,7 @@ from ._check import FloatArray, Path, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._depth_calibration import CalibratedDepth, calibrate_depth
-from ._reports import Estimate
+from ._reports import Estimate, with_estimates
 
 
 @dataclass(frozen=True)
@@ -296,12 +296,10 @@ def calibrate_correlation(
     _check.instance(sweep, DelaySweep, "sweep")
     if target_distance_m is not None and geometry_m is not None:
         raise ValueError("geometry_m: got it together with target_distance_m; needs one of them")
-    if target_distance_m is not None:
-        target_distance_m = _check.number(target_distance_m, "target_distance_m")
     options = {
         "black_level": black_level,
         "saturation_level": saturation_level,
-        "target_distance_m": target_distance_m,
+        "target_distance_m": _check.optional_number(target_distance_m, "target_distance_m"),
     }
     handle = _tofsmith.calibrate_correlation(
         _check.finite_array(sweep.delay_periods, "sweep.delay_periods", "(F,)"),
@@ -313,10 +311,8 @@ def calibrate_correlation(
         options,
         _check.progress(progress),
     )
-    fields = handle.fields()
+    fields = with_estimates(handle.fields())
     fields["dead"] = DeadPixels(**fields["dead"])
-    for name in ("light_drift", "level_drift"):
-        fields[name] = None if fields[name] is None else Estimate(*fields[name])
     fields["tap_mismatch"] = [Estimate(*pair) for pair in fields["tap_mismatch"]]
     return CalibratedCorrelation(**fields, _handle=handle)
 
@@ -450,10 +446,7 @@ def write_correlation_report(
 
 
 def _fit(handle: _tofsmith.IdealCodeFit, found: CalibratedCorrelation) -> IdealCodeFit:
-    fields = handle.fields()
+    fields = with_estimates(handle.fields())
     fields["response"] = ImpulseResponse(**fields["response"])
-    fields["parameter_hz"] = Estimate(*fields["parameter_hz"])
-    fields["harmonics"] = [
-        HarmonicRatio(**h | {"ratio": Estimate(*h["ratio"])}) for h in fields["harmonics"]
-    ]
+    fields["harmonics"] = [HarmonicRatio(**with_estimates(h)) for h in fields["harmonics"]]
     return IdealCodeFit(**fields, _handle=handle, _found=found._handle)

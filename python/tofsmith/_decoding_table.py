@@ -231,8 +231,7 @@ class DecodingTable:
 
 def _remade(name: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> DecodingTable:
     """Restores a pickled table, reading its file again if it has one."""
-    table: DecodingTable = getattr(DecodingTable, name)(*arguments, **keywords)
-    return table
+    return getattr(DecodingTable, name)(*arguments, **keywords)
 
 
 def table_of(code: CodeLike | DecodingTable, camera: Optional[CameraLike]) -> DecodingTable:

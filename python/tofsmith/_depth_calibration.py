@@ -17,7 +17,7 @@ from ._check import Path, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._files import read_raw
-from ._reports import Estimate
+from ._reports import Estimate, with_estimates
 
 
 @dataclass(frozen=True)
@@ -156,12 +156,10 @@ def calibrate_depth(
         _check.progress(progress),
     )
     fields = handle.fields()
+    for its in fields["frequencies"]:
+        its["harmonics"] = {
+            n: (Estimate(*a), Estimate(*b)) for n, (a, b) in its["harmonics"].items()}
     fields["frequencies"] = [
-        CalibratedFrequency(
-            its["frequency_hz"], Estimate(*its["offset_m"]), Estimate(*its["contrast"]),
-            {n: (Estimate(*a), Estimate(*b)) for n, (a, b) in its["harmonics"].items()},
-        )
-        for its in fields["frequencies"]
-    ]
+        CalibratedFrequency(**with_estimates(its)) for its in fields["frequencies"]]
     fields["terms"] = {name: Estimate(*value) for name, value in fields["terms"]}
     return CalibratedDepth(**fields, _handle=handle)

@@ -207,16 +207,13 @@ def _candidate(values: dict[str, Any], camera: Camera) -> Candidate:
     values["code"] = CodeSet._of(values["code"])
     values["error"] = report_of(values["error"], camera)
     values["per_measurement"] = [MeasurementReport(**m) for m in values["per_measurement"]]
-    if values["search"] is not None:
-        values["search"] = SearchRecord(**values["search"])
-    if values["robustness"] is not None:
-        values["robustness"] = RobustnessReport(**values["robustness"])
-    if values["multipath"] is not None:
-        values["multipath"] = OperatingMultipathReport(**values["multipath"])
+    kinds: dict[str, Any] = {"search": SearchRecord, "robustness": RobustnessReport,
+                             "multipath": OperatingMultipathReport, "exposure_order": ExposureOrder}
+    for name, kind in kinds.items():
+        if values[name] is not None:
+            values[name] = kind(**values[name])
     if values["interference"] is not None:
         values["interference"] = interference_report_of(values["interference"])
-    if values["exposure_order"] is not None:
-        values["exposure_order"] = ExposureOrder(**values["exposure_order"])
     return Candidate(**values)
 
 

@@ -9,7 +9,7 @@ from typing import Any, Optional, Unpack
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Progress
-from ._code import CodeLike, code_of
+from ._code import CodeLike, handles_of
 from ._decoding_table import DecodingTable
 from ._light import light_of
 from ._option_fields import EvaluateOptions, RobustnessOptions
@@ -57,9 +57,8 @@ class CramerRaoBound(_Bound):
     def __init__(
         self, code: CodeLike, camera: CameraLike, *, of_variance_too: bool = False
     ) -> None:
-        camera = camera_of(camera)
-        handle = code_of(code, camera)._handle
-        self._handle = _tofsmith.CramerRaoBound(handle, camera._handle, bool(of_variance_too))
+        handles = handles_of(code, camera)
+        self._handle = _tofsmith.CramerRaoBound(*handles, bool(of_variance_too))
 
     def sigma_m(self, signal_e_per_s: float, ambient_e_per_s: float) -> FloatArray:
         """Returns the minimum standard deviation [m] at the centres of equal cells of the range.
@@ -91,8 +90,7 @@ class HistogramBound(_Bound):
     """
 
     def __init__(self, code: CodeLike, camera: CameraLike) -> None:
-        camera = camera_of(camera)
-        self._handle = _tofsmith.HistogramBound(code_of(code, camera)._handle, camera._handle)
+        self._handle = _tofsmith.HistogramBound(*handles_of(code, camera))
 
 
 class DirectTofBound(_Bound):
@@ -127,9 +125,8 @@ def evaluate(
         If the code does not fit, the method does not support it, or an option is invalid.
     """
     camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    values = _tofsmith.evaluate(handle, camera._handle, dict(options), callback)
+    values = _tofsmith.evaluate(
+        *handles_of(code, camera), dict(options), _check.progress(progress))
     return report_of(values, camera)
 
 
@@ -150,11 +147,9 @@ def best_rotation(
     linear_geometric_mean_m : ndarray, shape (N,)
         Error of each rotation, geometric mean over the operating points [m].
     """
-    camera = camera_of(camera)
     options = {"trials": trials, "seed": seed}
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    return _tofsmith.best_rotation(handle, camera._handle, options, callback)
+    return _tofsmith.best_rotation(
+        *handles_of(code, camera), options, _check.progress(progress))
 
 
 @takes(EvaluateOptions)
@@ -177,9 +172,8 @@ def generator_loss(
         As in EvaluateOptions.
     """
     camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    values = _tofsmith.generator_loss(handle, camera._handle, dict(options), callback)
+    values = _tofsmith.generator_loss(
+        *handles_of(code, camera), dict(options), _check.progress(progress))
     nominal, actual, uncalibrated = (
         report_of(values[name], camera) for name in ("nominal", "actual", "uncalibrated")
     )
@@ -234,10 +228,8 @@ def robustness(
     **options
         As in RobustnessOptions.
     """
-    camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    values = _tofsmith.robustness(handle, camera._handle, dict(options), callback)
+    values = _tofsmith.robustness(
+        *handles_of(code, camera), dict(options), _check.progress(progress))
     return RobustnessReport(**values)
 
 
@@ -263,11 +255,9 @@ def motion_error(
     **options
         As in EvaluateOptions; trials, seed, method and unwrap_weights are used.
     """
-    camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
-    velocity = _check.number(velocity_m_per_s, "velocity_m_per_s")
-    callback = _check.progress(progress)
-    values = _tofsmith.motion_error(handle, camera._handle, velocity, dict(options), callback)
+    values = _tofsmith.motion_error(
+        *handles_of(code, camera), _check.number(velocity_m_per_s, "velocity_m_per_s"),
+        dict(options), _check.progress(progress))
     for name in ("surface", "edge"):
         shares = WrongShares(**values[name].pop("shares"))
         values[name] = MotionErrors(shares=shares, **values[name])
@@ -293,8 +283,6 @@ def interference_error(
     **options
         As in EvaluateOptions; trials, seed, method and unwrap_weights are used.
     """
-    camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    values = _tofsmith.interference_error(handle, camera._handle, dict(options), callback)
+    values = _tofsmith.interference_error(
+        *handles_of(code, camera), dict(options), _check.progress(progress))
     return interference_report_of(values)

@@ -10,9 +10,9 @@ from pathlib import Path as FilePath
 from typing import Any, Unpack
 
 from . import _check, _tofsmith
-from ._camera import Camera, CameraLike, camera_of
+from ._camera import Camera, CameraLike
 from ._check import Path
-from ._code import CodeLike, code_of
+from ._code import CodeLike, handles_of
 from ._option_fields import ExportOptions
 from ._options import takes
 
@@ -101,11 +101,9 @@ def export_waveforms(
     OSError
         If a file exists and `overwrite` is not set, or cannot be written.
     """
-    camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
     camera_handle, files, manifest, notes = _tofsmith.export_waveforms(
-        handle, camera._handle, _check.path(output), _check.text(format, "format"), dict(options),
-        bool(overwrite)
+        *handles_of(code, camera), _check.path(output), _check.text(format, "format"),
+        dict(options), bool(overwrite)
     )
     made = Camera._of(camera_handle)
     return ExportedCode([FilePath(file) for file in files], json.loads(manifest), made, notes)

@@ -50,9 +50,8 @@ def error_grid(
     signal, row = np.unique(report.signal_e_per_s, return_inverse=True)
     ambient, column = np.unique(report.ambient_e_per_s, return_inverse=True)
     values, errors = np.full((2, len(signal), len(ambient)), np.nan)
-    linear = kind == "linear"
-    values[row, column] = report.linear_mde_m if linear else report.circular_mde_m
-    errors[row, column] = report.linear_se_m if linear else report.circular_se_m
+    values[row, column] = getattr(report, f"{kind}_mde_m")
+    errors[row, column] = getattr(report, f"{kind}_se_m")
     return signal, ambient, values, errors
 
 
@@ -69,11 +68,7 @@ def error_curve(
     near = levels[len(levels) // 2] if at is None else levels[np.argmin(np.abs(levels - at))]
     kept = other == near
     order = np.argsort(x[kept])
-    mde, se = (
-        (report.linear_mde_m, report.linear_se_m)
-        if kind == "linear"
-        else (report.circular_mde_m, report.circular_se_m)
-    )
+    mde, se = (getattr(report, f"{kind}_{name}_m") for name in ("mde", "se"))
     picked = [values[kept][order] for values in (x, mde, se, report.receiver_bound_mae_m)]
     return picked[0], picked[1], picked[2], picked[3], float(near)
 

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _check, _tofsmith
-from ._camera import CameraLike, camera_of
+from ._camera import CameraLike
 from ._check import FloatArray
-from ._code import CodeLike, code_of
+from ._code import CodeLike, handles_of
 
 
 def coding_curve_length(table: npt.ArrayLike) -> float:
@@ -57,8 +57,7 @@ class ForwardModel:
     """
 
     def __init__(self, code: CodeLike, camera: CameraLike) -> None:
-        camera = camera_of(camera)
-        self._handle = _tofsmith.ForwardModel(code_of(code, camera)._handle, camera._handle)
+        self._handle = _tofsmith.ForwardModel(*handles_of(code, camera))
 
     @property
     def measurements(self) -> int:

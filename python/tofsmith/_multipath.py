@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _check, _tofsmith
-from ._camera import CameraLike, camera_of
+from ._camera import CameraLike
 from ._check import FloatArray, Progress
-from ._code import CodeLike, code_of
+from ._code import CodeLike, handles_of
 from ._light import ExponentialTail, light_of
 from ._option_fields import MultipathErrorOptions
 from ._options import takes
@@ -136,10 +136,8 @@ def multipath_error(
     **options
         As in MultipathErrorOptions; `decoding` as `multipath` of Decoder, without tail_m.
     """
-    camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    values = _tofsmith.multipath_error(handle, camera._handle, dict(options), callback)
+    values = _tofsmith.multipath_error(
+        *handles_of(code, camera), dict(options), _check.progress(progress))
     maps = [_maps(m) for m in values.pop("maps")]
     return MultipathErrorReport(**values, maps=maps)
 
@@ -155,8 +153,7 @@ class MultipathBound:
     """
 
     def __init__(self, code: CodeLike, camera: CameraLike) -> None:
-        camera = camera_of(camera)
-        self._handle = _tofsmith.MultipathBound(code_of(code, camera)._handle, camera._handle)
+        self._handle = _tofsmith.MultipathBound(*handles_of(code, camera))
 
     def sigma_m(
         self, signal_e_per_s: float, ambient_e_per_s: float, ratio: float, delay_m: float

@@ -22,6 +22,12 @@ class Estimate(NamedTuple):
     standard_error: float
 
 
+def with_estimates(fields: dict[str, Any]) -> dict[str, Any]:
+    """Returns fields with an Estimate for each pair (value, standard error)."""
+    return {name: Estimate(*value) if isinstance(value, tuple) else value
+            for name, value in fields.items()}
+
+
 @dataclass(frozen=True)
 class DepthErrorMean:
     """Geometric mean of the depth error over all operating points, with its standard error [m]."""

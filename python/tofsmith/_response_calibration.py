@@ -16,7 +16,7 @@ from ._camera_fields import ImpulseResponse
 from ._check import FloatArray, Path
 from ._option_fields import ResponseRecordOptions
 from ._options import takes
-from ._reports import Estimate
+from ._reports import Estimate, with_estimates
 
 
 @dataclass(frozen=True)
@@ -240,19 +240,9 @@ def calibrate_impulse_response(
     handle = _tofsmith.calibrate_impulse_response(
         values, step_s, start_s, bool(record.counts), record.notes, camera._handle, excitation
     )
-    fields = handle.fields()
-    fields["response"] = ImpulseResponse(**fields["response"])
-    fields["bandwidth_hz"] = Estimate(*fields["bandwidth_hz"])
-    fields["fits"] = [_fit(fit) for fit in fields["fits"]]
+    fields = with_estimates(handle.fields())
+    for each in (fields, *fields["fits"]):
+        each["response"] = ImpulseResponse(**each["response"])
+    fields["fits"] = [ParametricResponse(**with_estimates(fit)) for fit in fields["fits"]]
     fields["record"] = ResponseRecord(**fields["record"])
     return CalibratedResponse(**fields, _handle=handle)
-
-
-def _fit(values: dict[str, Any]) -> ParametricResponse:
-    return ParametricResponse(
-        ImpulseResponse(**values["response"]),
-        Estimate(*values["parameter_hz"]),
-        Estimate(*values["bandwidth_hz"]),
-        values["residual_rms"],
-        values["fit"],
-    )

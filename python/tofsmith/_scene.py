@@ -176,9 +176,7 @@ def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
     ndarray of float32, shape (H, W, 3)
         NaN without depth.
     """
-    radial = _check.real_array(radial_m, "radial_m", "(H, W)")
-    points: FloatImage = _tofsmith.points_m(radial, lens_dict(lens))
-    return points
+    return _tofsmith.points_m(_check.real_array(radial_m, "radial_m", "(H, W)"), lens_dict(lens))
 
 
 @takes(CaptureOptions)
@@ -268,10 +266,7 @@ def capture(
             given,
             _check.progress(progress),
         )
-    if options.get("frames") is not None:
-        return raw
-    only: npt.NDArray[np.float32] = raw[0]
-    return only
+    return raw[0] if options.get("frames") is None else raw
 
 
 @dataclass(frozen=True)

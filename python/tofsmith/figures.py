@@ -51,8 +51,7 @@ class Figure:
     def document(self) -> dict[str, Any]:
         """Data of the figure: values, axes and units."""
         text = self.page.partition('id="document">')[2].partition("</script>")[0]
-        block: dict[str, Any] = json.loads(text)["sections"][0]["blocks"][0]
-        return block
+        return json.loads(text)["sections"][0]["blocks"][0]
 
     def save(self, path: Union[str, Path]) -> None:
         """Writes the page to a file."""

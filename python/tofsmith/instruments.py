@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, NoReturn, Optional, Union, Unpack
 
 from . import _check, _tofsmith
-from ._camera import CameraLike, camera_of
+from ._camera import CameraLike
 from ._check import Progress
-from ._code import CodeLike, code_of
+from ._code import CodeLike, handles_of
 from ._option_fields import ExportOptions, UploadOptions
 from ._options import takes
 from ._tofsmith import (
@@ -101,11 +101,10 @@ def upload_script(
     ValueError
         Naming the points, rate, voltage or channel that the model does not support.
     """
-    camera = camera_of(camera)
-    handle = code_of(code, camera)._handle
+    handles = handles_of(code, camera)
     given: dict[str, Any] = {
         **options, "filter": filter, "tables": None if tables is None else dict(tables)}
-    return _tofsmith.upload_script(handle, camera._handle, _check.text(model, "model"), given)
+    return _tofsmith.upload_script(*handles, _check.text(model, "model"), given)
 
 
 @takes(UploadOptions)

@@ -177,11 +177,9 @@ Section candidates_section(const Camera& camera, const DesignResult& result) {
   const DepthErrorMeasure measure = camera.operating.measure();
   std::vector<DepthErrorRow> rows;
   for (const Candidate& c : result.candidates) {
-    rows.push_back({&c.error, c.method});
-    if (&c == &result.winner())
-      rows.back().ratio = Estimate{1.0, 0.0};
-    else
-      rows.back().ratio = gain_over(result, c, measure);
+    const bool is_best = &c == &result.winner();
+    rows.push_back(
+        {&c.error, c.method, is_best ? Estimate{1.0, 0.0} : gain_over(result, c, measure)});
   }
   return depth_error_section(camera, rows, result.best, false);
 }
@@ -248,15 +246,6 @@ std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const Evalu
   return rows;
 }
 
-Section zncc_comparison(std::span<const EvaluatedCode> codes) {
-  return {"Maximum likelihood compared with correlation",
-          {table_of_rows("zncc",
-                         "Depth error of the same trials decoded by zero-mean normalized "
-                         "cross-correlation (zncc), and ratio of the maximum-likelihood (ml) error "
-                         "to the zncc error.",
-                         zncc_comparison_rows(codes, true), {0})}};
-}
-
 Page design_report(const Camera& camera, const DesignResult& result,
                    const std::optional<SceneResult>& scene, const std::string& command_line,
                    const std::vector<std::string>& files) {
@@ -317,7 +306,14 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                          .caption = "One row per measurement, over one period."},
                         code, camera));
   page.sections.push_back(std::move(waveforms));
-  if (is_compared_with_zncc(evaluated)) page.sections.push_back(zncc_comparison(evaluated));
+  if (is_compared_with_zncc(evaluated))
+    page.sections.push_back(
+        {"Maximum likelihood compared with correlation",
+         {table_of_rows("zncc",
+                        "Depth error of the same trials decoded by zero-mean normalized "
+                        "cross-correlation (zncc), and ratio of the maximum-likelihood (ml) error "
+                        "to the zncc error.",
+                        zncc_comparison_rows(evaluated, true), {0})}});
   if (const auto judged = judged_codes(evaluated); !judged.empty())
     page.sections.push_back(robustness_section(judged));
   if (is_evaluated_with_motion(evaluated)) page.sections.push_back(motion_section(evaluated));

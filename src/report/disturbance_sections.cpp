@@ -44,6 +44,42 @@ Row motion_row(const std::string& code, std::string signal, std::string ambient,
           edge ? detected_text(*edge) : ""};
 }
 
+bool has_interference(const EvaluatedCode& code) { return code.interference.has_value(); }
+
+std::string plain_mm(double length_m) {
+  return std::isfinite(length_m) ? fmt::format("{:.3f}", 1e3 * length_m) : "";
+}
+
+/// @param expected, rms  of one operating point
+Row interference_row(const std::string& code, std::string signal, std::string ambient, double rms_m,
+                     std::string expected, std::string rms, const Estimate& alone_m,
+                     const Estimate& error_m, const WrongShares& shares) {
+  return {code,
+          std::move(signal),
+          std::move(ambient),
+          plain_mm(rms_m),
+          std::move(expected),
+          std::move(rms),
+          estimate_mm_text(alone_m),
+          estimate_mm_text(error_m),
+          percent(shares.wrong),
+          percent(shares.wrong_ok),
+          detected_text(shares)};
+}
+
+Row row(const std::string& code, const std::string& camera, const Estimate& nominal_m,
+        const Estimate& calibrated_m, const Estimate& uncalibrated_m) {
+  const auto ratio = [&](const Estimate& error_m) {
+    return fmt::format("{:.3f}", error_m.value / nominal_m.value);
+  };
+  return {code,
+          camera,
+          estimate_mm_text(calibrated_m),
+          ratio(calibrated_m),
+          estimate_mm_text(uncalibrated_m),
+          ratio(uncalibrated_m)};
+}
+
 }  // namespace
 
 bool is_evaluated_with_motion(std::span<const EvaluatedCode> codes) {
@@ -90,36 +126,6 @@ Section motion_section(std::span<const EvaluatedCode> codes) {
               first->motion->velocity_m_per_s),
           motion_rows(codes, true), {0})}};
 }
-
-namespace {
-
-bool has_interference(const EvaluatedCode& code) { return code.interference.has_value(); }
-
-std::string percent_text(double share) { return fmt::format("{:.2f}", 100.0 * share); }
-
-std::string plain_mm(double length_m) {
-  return std::isfinite(length_m) ? fmt::format("{:.3f}", 1e3 * length_m) : "";
-}
-
-/// @param expected, rms  of one operating point
-Row interference_row(const std::string& code, std::string signal, std::string ambient, double rms_m,
-                     std::string expected, std::string rms, const Estimate& alone_m,
-                     const Estimate& error_m, const WrongShares& shares) {
-  const auto detected = shares.detected();
-  return {code,
-          std::move(signal),
-          std::move(ambient),
-          plain_mm(rms_m),
-          std::move(expected),
-          std::move(rms),
-          estimate_mm_text(alone_m),
-          estimate_mm_text(error_m),
-          percent_text(shares.wrong),
-          percent_text(shares.wrong_ok),
-          detected ? percent_text(*detected) : ""};
-}
-
-}  // namespace
 
 bool is_evaluated_with_interference(std::span<const EvaluatedCode> codes) {
   return std::ranges::any_of(codes, has_interference);
@@ -180,23 +186,6 @@ Section interference_section(std::span<const EvaluatedCode> codes,
               interference_text(others)),
           interference_rows(codes, true), {0})}};
 }
-
-namespace {
-
-Row row(const std::string& code, const std::string& camera, const Estimate& nominal_m,
-        const Estimate& calibrated_m, const Estimate& uncalibrated_m) {
-  const auto ratio = [&](const Estimate& error_m) {
-    return fmt::format("{:.3f}", error_m.value / nominal_m.value);
-  };
-  return {code,
-          camera,
-          estimate_mm_text(calibrated_m),
-          ratio(calibrated_m),
-          estimate_mm_text(uncalibrated_m),
-          ratio(uncalibrated_m)};
-}
-
-}  // namespace
 
 std::vector<JudgedCode> judged_codes(std::span<const EvaluatedCode> codes) {
   std::vector<JudgedCode> judged;

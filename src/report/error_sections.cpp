@@ -150,9 +150,7 @@ Figure error_maps(const OperatingRange& range, const std::vector<DepthErrorRow>&
     auto point = code.error->points.begin();  // ordered by signal
     for (Eigen::Index s = 0; s < map.values.rows(); ++s)
       for (Eigen::Index a = 0; a < map.values.cols(); ++a, ++point)
-        map.values(s, a) =
-            1e3 * (range.error == DepthErrorKind::linear ? point->linear_mde_m.value
-                                                         : point->circular_mde_m.value);
+        map.values(s, a) = 1e3 * point->of(range.error).value;
     maps.push_back(std::move(map));
   }
   return heat_map_figure(

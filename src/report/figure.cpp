@@ -94,10 +94,6 @@ LineStyle ColourAssignment::style(const std::string& name) {
 
 LineStyle reference_style() { return {"#8a8f98", Dash::dot, 1.5}; }
 
-std::string axis_title(const std::string& label, const std::string& unit) {
-  return unit.empty() ? label : label + " (" + unit + ")";
-}
-
 Figure::Figure(FigureText text, std::string kind, std::string json)
     : text_(std::move(text)), kind_(std::move(kind)), json_(std::move(json)) {
   require(!text_.id.empty() && std::ranges::all_of(text_.id, is_id_character), "FigureText::id",

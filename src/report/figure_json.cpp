@@ -67,6 +67,15 @@ Json range_json(const std::optional<ValueRange>& range) {
   return range ? Json{number(range->low), number(range->high)} : Json();
 }
 
+/// @param field  "Axis::range.low"; @param what  "axis" or "scale"
+void check_range(const std::optional<ValueRange>& range, bool is_logarithmic,
+                 const std::string& field, const std::string& what) {
+  if (!range) return;
+  require(range->low < range->high, field, range->low, "must be below range.high");
+  require(!is_logarithmic || range->low > 0, field, range->low,
+          "must be > 0 on a logarithmic " + what);
+}
+
 }  // namespace
 
 Json number(double value) {
@@ -105,12 +114,7 @@ Json packed(std::span<const float> values, std::size_t row, double resolution) {
 }
 
 Json axis(const Axis& axis) {
-  if (axis.range) {
-    require(axis.range->low < axis.range->high, "Axis::range.low", axis.range->low,
-            "must be below range.high");
-    require(!axis.logarithmic || axis.range->low > 0, "Axis::range.low", axis.range->low,
-            "must be > 0 on a logarithmic axis");
-  }
+  check_range(axis.range, axis.logarithmic, "Axis::range.low", "axis");
   return {{"label", axis.label},
           {"unit", axis.unit},
           {"log", axis.logarithmic},
@@ -124,12 +128,7 @@ Json colours(const ColourScale& scale) {
           true, "must be false for a diverging map");
   require(scale.clip_fraction >= 0 && scale.clip_fraction < 0.5, "ColourScale::clip_fraction",
           scale.clip_fraction, "must be in [0, 0.5)");
-  if (scale.range) {
-    require(scale.range->low < scale.range->high, "ColourScale::range.low", scale.range->low,
-            "must be below range.high");
-    require(!scale.logarithmic || scale.range->low > 0, "ColourScale::range.low", scale.range->low,
-            "must be > 0 on a logarithmic scale");
-  }
+  check_range(scale.range, scale.logarithmic, "ColourScale::range.low", "scale");
   return {{"label", scale.label},
           {"unit", scale.unit},
           {"map", names[static_cast<std::size_t>(scale.map)]},

@@ -102,41 +102,6 @@ void add_all_maps(const std::vector<MultipathErrorReport>& codes, Cells cells,
       [](const MultipathCell& cell) { return 1e3 * cell.cramer_rao_mae_m; });
 }
 
-}  // namespace
-
-std::vector<Row> multipath_rows(const std::vector<MultipathErrorReport>& codes) {
-  std::vector<Row> rows{{"code", "signal (e/s)", "light", "r d/(1+r) (mm)", "bias 1 (mm)",
-                         "error 1 (mm)", "bias 2 (mm)", "error 2 (mm)", "gain", "Cramer-Rao (mm)",
-                         "two (%)", "unresolved (%)"}};
-  for (const MultipathErrorReport& code : codes)
-    for (const MultipathMaps& maps : code.maps) {
-      rows.push_back(row(code, maps, "one return", maps.single));
-      for (const MultipathCell& cell : maps.points)
-        rows.push_back(row(code, maps, light_of(cell, "return"), cell));
-      rows.push_back(row(code, maps, "one return, tail decoding", maps.single_by_tail));
-      for (const MultipathCell& cell : maps.tails)
-        rows.push_back(row(code, maps, light_of(cell, "tail"), cell));
-    }
-  return rows;
-}
-
-Section multipath_section(const std::vector<MultipathErrorReport>& codes) {
-  Section section{"Multipath", {}};
-  for (const MultipathErrorReport& code : codes)
-    if (!code.why_no_two_returns.empty())
-      section.blocks.emplace_back(
-          Paragraph{code.code + " supports only single-path decoding: " + code.why_no_two_returns});
-  add_all_maps(codes, &MultipathMaps::points, "point", "a second return", section);
-  add_all_maps(codes, &MultipathMaps::tails, "tail", "an exponential tail", section);
-  section.blocks.emplace_back(table_of_rows(
-      "multipath",
-      "1: single-path decoding, 2: two-return (or tail) decoding; gain: error 1 / error 2.",
-      multipath_rows(codes), {0, 2}));
-  return section;
-}
-
-namespace {
-
 Row row_of(const DelayClass& its, const std::string& delay) {
   const double gain = std::abs(its.bias_m[0]) / std::abs(its.bias_m[1]);
   return {delay,
@@ -227,6 +192,37 @@ Figure cloud_figure(const MultipathScene& scene, const ValueRange& range) {
 }
 
 }  // namespace
+
+std::vector<Row> multipath_rows(const std::vector<MultipathErrorReport>& codes) {
+  std::vector<Row> rows{{"code", "signal (e/s)", "light", "r d/(1+r) (mm)", "bias 1 (mm)",
+                         "error 1 (mm)", "bias 2 (mm)", "error 2 (mm)", "gain", "Cramer-Rao (mm)",
+                         "two (%)", "unresolved (%)"}};
+  for (const MultipathErrorReport& code : codes)
+    for (const MultipathMaps& maps : code.maps) {
+      rows.push_back(row(code, maps, "one return", maps.single));
+      for (const MultipathCell& cell : maps.points)
+        rows.push_back(row(code, maps, light_of(cell, "return"), cell));
+      rows.push_back(row(code, maps, "one return, tail decoding", maps.single_by_tail));
+      for (const MultipathCell& cell : maps.tails)
+        rows.push_back(row(code, maps, light_of(cell, "tail"), cell));
+    }
+  return rows;
+}
+
+Section multipath_section(const std::vector<MultipathErrorReport>& codes) {
+  Section section{"Multipath", {}};
+  for (const MultipathErrorReport& code : codes)
+    if (!code.why_no_two_returns.empty())
+      section.blocks.emplace_back(
+          Paragraph{code.code + " supports only single-path decoding: " + code.why_no_two_returns});
+  add_all_maps(codes, &MultipathMaps::points, "point", "a second return", section);
+  add_all_maps(codes, &MultipathMaps::tails, "tail", "an exponential tail", section);
+  section.blocks.emplace_back(table_of_rows(
+      "multipath",
+      "1: single-path decoding, 2: two-return (or tail) decoding; gain: error 1 / error 2.",
+      multipath_rows(codes), {0, 2}));
+  return section;
+}
 
 std::vector<Row> multipath_scene_rows(const MultipathScene& scene) {
   std::vector<Row> rows{{"mean delay (m)", "pixels", "ratio", "bias 1 (mm)", "bias 2 (mm)",

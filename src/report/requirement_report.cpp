@@ -69,36 +69,6 @@ Figure error_map(const RequirementMap& map, double error_m) {
       {values}, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 
-}  // namespace
-
-std::string searched_codes_text(const RequirementOptions& options) {
-  if (options.exact)
-    return fmt::format("codes designed with effort {}", plain_number(options.effort, 3));
-  return "atlas codes, although designed codes may require less (option exact)";
-}
-
-std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
-                                                       const Requirements& found,
-                                                       const RequirementOptions& options) {
-  std::vector<std::vector<std::string>> rows{
-      {"vary", "now", "suffices", "error (mm)", "code", "no code below"}};
-  for (const Sufficiency& s : found.varied) {
-    const std::string now = amount_text(camera, s.quantity);
-    rows.push_back({std::string(name_of(s.quantity)), now.empty() ? "1 x" : now,
-                    s.factor
-                        ? scaled_text(camera, s.quantity, *s.factor)
-                        : fmt::format("not reached at {} x", plain_number(options.max_factor, 3)),
-                    plain_number(1e3 * s.error_m, 4), s.code.name(),
-                    s.excluded_below == 0.0 ? "(no bound)"
-                    : s.excluded_below >= options.max_factor
-                        ? fmt::format("at least {} x", plain_number(options.max_factor, 3))
-                        : scaled_text(camera, s.quantity, s.excluded_below)});
-  }
-  return rows;
-}
-
-namespace {
-
 /// "from 1 to 3 m", or "anywhere in the range of 10 m".
 std::string distance_text(const Camera& camera) {
   const std::string depths = true_depths_in_words(camera);
@@ -145,6 +115,32 @@ KeyValueList conditions(const Camera& camera, const Requirements& found,
 }
 
 }  // namespace
+
+std::string searched_codes_text(const RequirementOptions& options) {
+  if (options.exact)
+    return fmt::format("codes designed with effort {}", plain_number(options.effort, 3));
+  return "atlas codes, although designed codes may require less (option exact)";
+}
+
+std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
+                                                       const Requirements& found,
+                                                       const RequirementOptions& options) {
+  std::vector<std::vector<std::string>> rows{
+      {"vary", "now", "suffices", "error (mm)", "code", "no code below"}};
+  for (const Sufficiency& s : found.varied) {
+    const std::string now = amount_text(camera, s.quantity);
+    rows.push_back({std::string(name_of(s.quantity)), now.empty() ? "1 x" : now,
+                    s.factor
+                        ? scaled_text(camera, s.quantity, *s.factor)
+                        : fmt::format("not reached at {} x", plain_number(options.max_factor, 3)),
+                    plain_number(1e3 * s.error_m, 4), s.code.name(),
+                    s.excluded_below == 0.0 ? "(no bound)"
+                    : s.excluded_below >= options.max_factor
+                        ? fmt::format("at least {} x", plain_number(options.max_factor, 3))
+                        : scaled_text(camera, s.quantity, s.excluded_below)});
+  }
+  return rows;
+}
 
 Page requirements_report(const Camera& camera, const Requirements& found,
                          const RequirementOptions& options, const std::string& command_line) {

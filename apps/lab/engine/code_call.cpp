@@ -94,27 +94,6 @@ Json field_json(const KeyDescription& described, const Json& document, const Jso
   return field;
 }
 
-}  // namespace
-
-Answer camera_answer(const Camera& camera) {
-  const Json document = Json::parse(camera_to_json(camera));
-  Camera blank;
-  blank.operating = default_operating_range();
-  const Json defaults = Json::parse(camera_to_json(blank));
-  Answer answer;
-  answer["name"] = camera.name;
-  answer["toml"] = camera_to_toml(camera);
-  answer["range_m"] = camera.range_m();
-  Json& fields = answer["fields"] = Json::array();
-  for (const KeyDescription& described : describe_camera_keys(camera))
-    if (described.key.applies && described.type != ValueType::table)
-      fields.push_back(field_json(described, document, defaults));
-  answer["warnings"] = Json::array();
-  return answer;
-}
-
-namespace {
-
 /// Wraps a position to the period [0, 1).
 double wrapped(double position) {
   position -= std::floor(position);
@@ -185,6 +164,22 @@ bool are_complements(const Waveform& a, const Waveform& b, int samples) {
 }
 
 }  // namespace
+
+Answer camera_answer(const Camera& camera) {
+  const Json document = Json::parse(camera_to_json(camera));
+  Camera blank;
+  blank.operating = default_operating_range();
+  const Json defaults = Json::parse(camera_to_json(blank));
+  Answer answer;
+  answer["name"] = camera.name;
+  answer["toml"] = camera_to_toml(camera);
+  answer["range_m"] = camera.range_m();
+  Json& fields = answer["fields"] = Json::array();
+  for (const KeyDescription& described : describe_camera_keys(camera))
+    if (described.key.applies && described.type != ValueType::table)
+      fields.push_back(field_json(described, document, defaults));
+  return answer;
+}
 
 Answer code_answer(const CodeSet& code, const Camera& camera) {
   const ForwardModel model(code, camera);

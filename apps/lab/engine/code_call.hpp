@@ -8,8 +8,7 @@
 
 namespace tofsmith::lab {
 
-/// Returns {toml, fields, range_m, warnings}: the complete camera, and every key that applies to
-/// it.
+/// Returns {toml, fields, range_m}: the complete camera, and every key that applies to it.
 Answer camera_answer(const Camera& camera);
 
 /// Returns the waveforms, correlation functions and coding curve of a code on a camera.

@@ -21,6 +21,11 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+constexpr std::size_t max_changes = 1000;
+
+/// Placeholder for codes without a file; the page saves them under this name.
+constexpr const char* code_file_name = "code.json";
+
 }  // namespace
 
 Reply Answer::reply() && {
@@ -32,15 +37,6 @@ Reply error_reply(std::string_view message, std::string_view field) {
   if (!field.empty()) error["field"] = field;
   return {text_of(Json{{"error", std::move(error)}}), {}};
 }
-
-namespace {
-
-constexpr std::size_t max_changes = 1000;
-
-/// Placeholder for codes without a file; the page saves them under this name.
-constexpr const char* code_file_name = "code.json";
-
-}  // namespace
 
 void Request::refuse(const char* name, const char* expected) const {
   const auto found = json_.find(name);

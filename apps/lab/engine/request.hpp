@@ -38,7 +38,6 @@ struct Reply {
 class Answer {
  public:
   Json& operator[](const char* key) { return json_[key]; }
-  void set(Json json) { json_ = std::move(json); }
 
   /// Adds an array, and {"array": name, "shape": [...]} under that name to the object.
   template <typename Number>

@@ -81,49 +81,6 @@ std::string scene_commands(const Request& request, const std::string& code,
   return simulate + "\n" + decode + " -o depth.npy";
 }
 
-}  // namespace
-
-Answer command_answer(const Request& request) {
-  const std::string what = request.text("what");
-  const std::string camera = camera_words(request);
-  std::vector<std::string> codes = request.texts("codes");
-  for (std::string& code : codes) code = shell_word(code);
-  const auto first_code = [&] {
-    require(!codes.empty(), "codes", "[]", "expected a code");
-    return codes.front();
-  };
-  std::string command;
-  if (what == "camera") {
-    const std::string name = camera_name(request);
-    command = "tofsmith cameras " +
-              shell_word(name.empty() ? std::string(default_camera_name) : name) +
-              settings_words(request);
-  } else if (what == "codes") {
-    command = "tofsmith codes " + first_code() + camera;
-  } else if (what == "evaluate") {
-    first_code();
-    command = fmt::format("tofsmith evaluate {}{}", fmt::join(codes, " "), camera) +
-              option(request, "trials", "--trials") + option(request, "seed", "--seed");
-  } else if (what == "scene") {
-    command = scene_commands(request, first_code(), camera);
-  } else if (what == "design") {
-    command = "tofsmith design" + camera;
-    if (request.has("method")) command += " --method " + shell_word(request.text("method"));
-    command += option(request, "exposures", "--exposures") + option(request, "effort", "--effort") +
-               option(request, "trials", "--trials") + option(request, "seed", "--seed") +
-               " -o design";
-  } else if (what == "export") {
-    command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), camera);
-  } else {
-    reject("what", what, "expected camera, codes, evaluate, scene, design or export");
-  }
-  Answer answer;
-  answer["command"] = command;
-  return answer;
-}
-
-namespace {
-
 constexpr std::int64_t max_seed = std::int64_t{1} << 53;  // larger integers are not exact in JSON
 
 std::uint64_t seed_of(const Request& request) {
@@ -157,13 +114,9 @@ Answer evaluate_answer(const Request& request, const Progress& progress) {
   const OperatingRange& range = camera.operating;
   answer.add("signal_e_per_s", range.signal_e_per_s, {range.signal_e_per_s.size()});
   answer.add("ambient_e_per_s", range.ambient_e_per_s, {range.ambient_e_per_s.size()});
-  const bool is_linear = range.error == DepthErrorKind::linear;
-  const auto error_of = [&](const PointDepthError& p) -> const Estimate& {
-    return is_linear ? p.linear_mde_m : p.circular_mde_m;
-  };
-  add_map(answer, "error_m", report, range, [&](const auto& p) { return error_of(p).value; });
+  add_map(answer, "error_m", report, range, [&](const auto& p) { return p.of(range.error).value; });
   add_map(answer, "standard_error_m", report, range,
-          [&](const auto& p) { return error_of(p).standard_error; });
+          [&](const auto& p) { return p.of(range.error).standard_error; });
   add_map(answer, "cramer_rao_mae_m", report, range,
           [](const auto& p) { return p.cramer_rao_mae_m; });
   add_map(answer, "receiver_bound_mae_m", report, range,
@@ -259,6 +212,45 @@ Answer design_answer(const Request& request, const Progress& progress) {
   answer["error_m"] = geometric_mean_error_m(winner.error, camera.operating.measure());
   answer["explanation"] = result.explanation;
   answer["left_out"] = result.left_out;
+  return answer;
+}
+
+Answer command_answer(const Request& request) {
+  const std::string what = request.text("what");
+  const std::string camera = camera_words(request);
+  std::vector<std::string> codes = request.texts("codes");
+  for (std::string& code : codes) code = shell_word(code);
+  const auto first_code = [&] {
+    require(!codes.empty(), "codes", "[]", "expected a code");
+    return codes.front();
+  };
+  std::string command;
+  if (what == "camera") {
+    const std::string name = camera_name(request);
+    command = "tofsmith cameras " +
+              shell_word(name.empty() ? std::string(default_camera_name) : name) +
+              settings_words(request);
+  } else if (what == "codes") {
+    command = "tofsmith codes " + first_code() + camera;
+  } else if (what == "evaluate") {
+    first_code();
+    command = fmt::format("tofsmith evaluate {}{}", fmt::join(codes, " "), camera) +
+              option(request, "trials", "--trials") + option(request, "seed", "--seed");
+  } else if (what == "scene") {
+    command = scene_commands(request, first_code(), camera);
+  } else if (what == "design") {
+    command = "tofsmith design" + camera;
+    if (request.has("method")) command += " --method " + shell_word(request.text("method"));
+    command += option(request, "exposures", "--exposures") + option(request, "effort", "--effort") +
+               option(request, "trials", "--trials") + option(request, "seed", "--seed") +
+               " -o design";
+  } else if (what == "export") {
+    command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), camera);
+  } else {
+    reject("what", what, "expected camera, codes, evaluate, scene, design or export");
+  }
+  Answer answer;
+  answer["command"] = command;
   return answer;
 }
 

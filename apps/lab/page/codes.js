@@ -95,8 +95,8 @@ const axesOf = (length) => [0, 1, 2].map((axis) => {
 
 /** The part of the page that shows codes. */
 export class CodesView {
-  constructor(lab, about, files) {
-    Object.assign(this, {lab, about, files, shape: ''});
+  constructor(lab, about) {
+    Object.assign(this, {lab, about, shape: ''});
     this.waveforms = new Columns('waveforms', () => new WaveformPlot());
     this.correlation = new Columns('correlation', () => new LinePlot());
     this.view = new SpaceView();  // shared, so that all curves rotate together
@@ -259,9 +259,7 @@ export class CodesView {
   #describe(i) {
     const slot = this.lab.slots[i], card = this.cards[i];
     if (!card) return;
-    showProblem(card.problem, slot.problem);
-    card.select.toggleAttribute('aria-invalid', false);
-    if (slot.problem) card.select.setAttribute('aria-invalid', 'true');
+    showProblem(card.problem, slot.problem, card.select);
     const {code} = slot;
     card.facts.textContent = !code || slot.problem ? '' : [
       `${code.measurements} measurements`,
@@ -272,9 +270,7 @@ export class CodesView {
   #draw(i) {
     const {code} = this.lab.slots[i], source = this.lab.state.codes[i];
     if (!code || !source) return;
-    const kept = code.curve_variance_kept === undefined ?
-        '' :
-        `${shortText(100 * code.curve_variance_kept, 3)} % of its variance shown`;
+    const kept = `${shortText(100 * code.curve_variance_kept, 3)} % of its variance shown`;
     this.waveforms.title(i, code.name, 'light above, gate below');
     this.correlation.title(i, code.name);
     this.curves.title(i, code.name, kept);

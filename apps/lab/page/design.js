@@ -63,13 +63,13 @@ export class DesignView {
       };
       const answer = await this.engine.call(
           'design', asked, {onProgress: (progress) => this.#follow(progress)});
-      const name = answer.name ?? JSON.parse(answer.file).name ?? 'designed';
+      const {name} = answer;
       this.lab.addCode({name, file: answer.file});
       const error =
           Number.isFinite(answer.error_m) ? `depth error ${lengthText(answer.error_m)}` : '';
       this.text.textContent = `${name}: ${error}`;
       this.explanation.replaceChildren(
-          ...[answer.explanation ?? []].flat().map((text) => element('p', {}, text)));
+          ...answer.explanation.map((text) => element('p', {}, text)));
       announce(`The design is finished: ${name}, ${error}.`);
     } catch (error) {
       this.text.textContent = error instanceof Outdated ? 'cancelled; nothing changed' : '';

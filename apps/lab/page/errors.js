@@ -57,11 +57,9 @@ export class ErrorsView {
 
   #setSeed(input) {
     const isSeed = /^\d{1,15}$/.test(input.value.trim());
-    input.setAttribute('aria-invalid', String(!isSeed));
     showProblem(
         byId('error-problem'),
-        isSeed ? '' :
-                 `seed: found ${input.value || 'nothing'}; expected an integer >= 0`);
+        isSeed ? '' : `seed: found ${input.value || 'nothing'}; expected an integer >= 0`, input);
     if (isSeed)
       this.lab.store.change((state) => {
         state.seed = Number(input.value);

@@ -147,9 +147,7 @@ class Field {
 
   /** Shows the error of the input; empty: valid. */
   tell(message) {
-    showProblem(this.problem, message);
-    this.input.toggleAttribute('aria-invalid', false);
-    if (message) this.input.setAttribute('aria-invalid', 'true');
+    showProblem(this.problem, message, this.input);
   }
 
   /** Updates the control after a change of the camera. */

@@ -46,14 +46,11 @@ function startCamera(lab, about) {
   lab.listen((what, problem) => {
     if (what === 'camera problem') showProblem(byId('camera-error'), problem);
     if (what !== 'camera') return;
-    showProblem(
-        byId('camera-error'),
-        (lab.camera.warnings ?? []).map((warning) => warning.message ?? warning).join('\n'));
+    showProblem(byId('camera-error'), '');
     const {camera} = lab.state;
     choice.replaceChildren(
         ...(camera.file === undefined ? [] : [element('option', {value: '!'}, camera.file_name)]),
-        ...about.cameras.map(
-            (name) => element('option', {value: name.name ?? name}, name.name ?? name)));
+        ...about.cameras.map((name) => element('option', {value: name}, name)));
     choice.value = camera.file === undefined ? camera.built_in : '!';
     panel.show(lab.camera.fields, lab.firstFields);
     const f0 = lab.camera.fields.find((field) => field.key === 'fundamental_frequency_hz')?.value;

@@ -62,9 +62,4 @@ export class Sharpener {
     }
     this.#isBusy = false;
   }
-
-  /** True if no step runs or waits. */
-  get isIdle() {
-    return !this.#isBusy;
-  }
 }

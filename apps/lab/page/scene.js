@@ -45,15 +45,12 @@ export class SceneView {
   #controls(about) {
     const {store} = this.lab, put = (key, read) => (event) => {
       const text = event.target.value, value = read(text);
-      if (value === undefined) {
-        event.target.setAttribute('aria-invalid', 'true');
-        showProblem(
-            byId('scene-problem'),
-            `${key}: found ${text}; expected a number >= 0 or an empty field`);
-        return;
-      }
-      event.target.setAttribute('aria-invalid', 'false');
-      showProblem(byId('scene-problem'), '');
+      showProblem(
+          byId('scene-problem'),
+          value === undefined ? `${key}: found ${text}; expected a number >= 0 or an empty field` :
+                                '',
+          event.target);
+      if (value === undefined) return;
       store.change((state) => {
         state.scene[key] = value;
       });
@@ -149,8 +146,7 @@ export class SceneView {
       scale: barOf('decoded minus true', [-most, most], divergingColour),
       text: (v) => `${title} ${lengthText(v)}`
     });
-    const mean = (answer) =>
-        (answer.mean_error_m === undefined ? '' : `mean ${lengthText(answer.mean_error_m, 3)}`);
+    const mean = ({mean_error_m: error}) => `mean ${lengthText(error, 3)}`;
     const {pictures} = this, deviations = alone.standard_deviation_m.values,
           scale = [rangeOf([deviations])[0], 2 * spread(deviations)];
     pictures.truth.show(

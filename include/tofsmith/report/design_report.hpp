@@ -90,8 +90,6 @@ bool is_compared_with_zncc(std::span<const EvaluatedCode> codes);
 /// means and optionally every light level.
 std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const EvaluatedCode> codes,
                                                            bool every_level);
-/// Returns zncc_comparison_rows() as a section.
-Section zncc_comparison(std::span<const EvaluatedCode> codes);
 
 /// Returns the table of multipath errors per code and signal, headings first.
 std::vector<std::vector<std::string>> multipath_rows(

@@ -36,9 +36,6 @@ struct Axis {
   std::optional<ValueRange> range = {};  ///< default: from the values
 };
 
-/// Returns "label (unit)", or "label" if the unit is empty.
-std::string axis_title(const std::string& label, const std::string& unit);
-
 /// A figure as data, which the page's viewer draws.
 class Figure {
  public:
