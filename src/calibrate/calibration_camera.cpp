@@ -38,13 +38,10 @@ CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySwe
   CorrelationCalibrationOptions options{.taps = camera.sensor.taps,
                                         .differences = camera.sensor.subtracts(),
                                         .range_m = camera.range_m()};
-  if (camera.sensor.is_signed()) {
+  if (camera.sensor.is_signed() || !options.differences)
     options.black_level = camera.sensor.black_level_dn.value_or(0.0);
-  } else if (!options.differences) {
-    options.black_level = camera.sensor.black_level_dn.value_or(0.0);
-    if (camera.sensor.adc_bits)
-      options.saturation_level = static_cast<float>(std::exp2(*camera.sensor.adc_bits) - 1.0);
-  }
+  if (!options.differences && camera.sensor.adc_bits)
+    options.saturation_level = static_cast<float>(std::exp2(*camera.sensor.adc_bits) - 1.0);
   options.exposure_s =
       column_exposures_s(camera, sweep.frames.measurements, options.differences ? 1 : options.taps);
   return options;

@@ -15,7 +15,6 @@
 #include "calibrate/sweep_pixels.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
-#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
@@ -143,17 +142,13 @@ Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& ali
     return group_means(sum, bench.groups) / (used * freedom);
   }
   const Eigen::MatrixXd mean = bench.mean - bench.drift.correction;
-  Eigen::MatrixXd rest = mean;
-  const Eigen::MatrixXd means = group_means(mean, bench.groups);
-  for (int f = 0; f < frames; ++f)
-    rest.row(f) -= means.row(bench.groups.group_of_frame[static_cast<std::size_t>(f)]);
   const double pixels = static_cast<double>(bench.live.size());
   constexpr int min_freedom = 4;
   if (frames - groups >= min_freedom) {
     result.noise_source = "repeats";
     return Eigen::MatrixXd::Constant(
         groups, columns,
-        pixels * rest.squaredNorm() /
+        pixels * within_groups(mean, bench.groups).squaredNorm() /
             (static_cast<double>(frames - groups) * static_cast<double>(columns)));
   }
   // The upper half of the harmonics contains only noise for band-limited cameras.

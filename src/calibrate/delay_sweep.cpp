@@ -4,15 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "calibrate/sweep_pixels.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/sample_times.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
@@ -46,13 +45,7 @@ RawFrames frames_of(const Eigen::MatrixXd& values) {
 
 std::vector<double> shifts_of(const std::filesystem::path& path, DecimalMark decimal,
                               std::vector<std::string>& notes) {
-  if (lower_extension(path) == ".npy") {
-    const NpyArray array = read_npy(path);
-    if (array.axes() != 1)
-      throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
-                                               describe_shape(array.shape())));
-    return array.to_doubles();
-  }
+  if (lower_extension(path) == ".npy") return read_one_axis(path);
   const NumberTable table = read_number_column(path, "the shifts", decimal);
   notes.insert(notes.end(), table.notes.begin(), table.notes.end());
   return {table.values.col(0).begin(), table.values.col(0).end()};

@@ -134,13 +134,6 @@ PhasorOffsets offsets_of(const Fundamentals& model, const ReferencePixels& pixel
 struct CalibratedCamera {
   Camera camera;
   std::vector<double> offset_m, contrast;  // per exposure of the code
-
-  void apply() {
-    Playback playback = camera.playback.value_or(Playback());
-    playback.set_offsets_m(offset_m);
-    camera.playback = playback;
-    if (camera.sensor.mixes_taps()) camera.sensor.modulation_contrasts = contrast;
-  }
 };
 
 std::vector<std::size_t> frequency_of_exposures(const CodeSet& code,
@@ -158,17 +151,19 @@ std::vector<std::size_t> frequency_of_exposures(const CodeSet& code,
 void adjust(CalibratedCamera& calibrated, const std::vector<std::size_t>& frequency,
             const std::vector<int>& repetitions, const std::vector<double>& offset_rad,
             const std::vector<double>& contrast) {
-  const double range_m = calibrated.camera.range_m();
+  Camera& camera = calibrated.camera;
   for (std::size_t e = 0; e < frequency.size(); ++e) {
-    const double period_m = range_m / repetitions[frequency[e]];
+    const double period_m = camera.range_m() / repetitions[frequency[e]];
     calibrated.offset_m[e] = wrapped_difference_m(
         calibrated.offset_m[e] + offset_rad[frequency[e]] / turn * period_m, period_m);
-    if (calibrated.camera.sensor.mixes_taps()) calibrated.contrast[e] *= contrast[frequency[e]];
+    if (camera.sensor.mixes_taps()) calibrated.contrast[e] *= contrast[frequency[e]];
   }
   const double largest = std::ranges::max(calibrated.contrast);
   if (largest > 1.0)
     for (double& c : calibrated.contrast) c /= largest;
-  calibrated.apply();
+  camera.playback = camera.playback.value_or(Playback());
+  camera.playback->set_offsets_m(calibrated.offset_m);
+  if (camera.sensor.mixes_taps()) camera.sensor.modulation_contrasts = calibrated.contrast;
 }
 
 /// "2 to 8" or "3, 5, 7".

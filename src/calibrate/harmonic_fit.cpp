@@ -71,14 +71,9 @@ Eigen::MatrixXcd advanced(Eigen::MatrixXcd coefficients, double shift) {
   return coefficients;
 }
 
-namespace {
-
-constexpr int max_harmonic = 20;
-
-}  // namespace
-
 HarmonicFit::HarmonicFit(const Fundamentals& model, const ReferencePixels& pixels, int rows)
     : model_(model), pixels_(pixels) {
+  constexpr int max_harmonic = 20;
   for (std::size_t f = 0; f < model.repetitions.size(); ++f)
     for (int h = 1; h <= max_harmonic && h * model.repetitions[f] < rows / 2; ++h)
       terms_.push_back({f, h});

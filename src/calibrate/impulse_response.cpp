@@ -136,11 +136,10 @@ Eigen::VectorXd quiet_values(const Eigen::VectorXd& values, Excitation excitatio
   if (ahead >= min_samples) return values.head(ahead);
   const Index behind = values.size() - (place.centre + 3 * reach);
   if (excitation == Excitation::pulse && behind >= min_samples) return values.tail(behind);
-  require(false, "record", fmt::format("{} values before the response", std::max<Index>(0, ahead)),
-          fmt::format("must contain the level before the response: at least {} values that end 3 "
-                      "widths before it",
-                      min_samples));
-  return {};
+  reject("record", fmt::format("{} values before the response", std::max<Index>(0, ahead)),
+         fmt::format("must contain the level before the response: at least {} values that end 3 "
+                     "widths before it",
+                     min_samples));
 }
 
 /// Range of significant values, with a margin.

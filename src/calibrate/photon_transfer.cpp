@@ -20,8 +20,8 @@ constexpr double rounding_dn2 = 1.0 / 12.0;
 constexpr double max_clipped = 1e-4;  // share of pixels at the limit of a valid point
 
 struct PairStatistics {
-  RunningStatistics mean, difference, raw;
-  std::size_t clipped = 0, pixels = 0;
+  RunningStatistics mean, difference;
+  std::size_t clipped = 0;
 };
 
 PairStatistics statistics_of(const RawFrames& raw, int first, int measurement, double limit) {
@@ -32,12 +32,9 @@ PairStatistics statistics_of(const RawFrames& raw, int first, int measurement, d
   for (std::size_t p = 0; p < raw.pixels_per_frame(); ++p) {
     const double x = a[p * stride], y = b[p * stride];
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
-    ++s.pixels;
     if (x >= limit || y >= limit) ++s.clipped;
     s.mean.add(0.5 * (x + y));
     s.difference.add(x - y);
-    s.raw.add(x);
-    s.raw.add(y);
   }
   return s;
 }
@@ -76,20 +73,26 @@ void check_pairs(const RawFrames& raw, const RawFrames& first, const char* name)
           "must be >= 16");
 }
 
+void add_point(const RunningStatistics& light_dn, const RunningStatistics& change, bool dark,
+               double averaged, PhotonTransfer& result) {
+  const double variance = 0.5 * averaged * change.variance();
+  result.points.push_back(
+      {.mean_dn = light_dn.mean(),
+       .variance_dn2 = {variance,
+                        variance * std::sqrt(2.0 / static_cast<double>(change.count() - 1))},
+       .dark = dark});
+}
+
 void add_points(const RawFrames& raw, double limit, bool dark, double averaged,
                 PhotonTransfer& result) {
   for (int f = 0; f < raw.frames; f += 2)
     for (int k = 0; k < raw.measurements; ++k) {
       const PairStatistics s = statistics_of(raw, f, k, limit);
-      if (s.pixels < 16) continue;
-      PhotonTransferPoint point{.mean_dn = s.mean.mean(), .dark = dark};
+      if (s.mean.count() < 16) continue;
       // A change of light shifts the mean of the difference, not its variance.
-      const double variance = 0.5 * averaged * s.difference.variance();
-      point.variance_dn2 = {variance,
-                            variance * std::sqrt(2.0 / static_cast<double>(s.pixels - 1))};
-      point.saturated =
-          static_cast<double>(s.clipped) > max_clipped * static_cast<double>(s.pixels);
-      result.points.push_back(point);
+      add_point(s.mean, s.difference, dark, averaged, result);
+      result.points.back().saturated =
+          static_cast<double>(s.clipped) > max_clipped * static_cast<double>(s.mean.count());
     }
 }
 
@@ -287,11 +290,8 @@ struct FramePair {
 
 FramePair pair_of(const RawFrames& raw, int first) {
   FramePair pair;
-  pair.mean = {.frames = 1,
-               .height = raw.height,
-               .width = raw.width,
-               .measurements = raw.measurements,
-               .values = {}};
+  pair.mean = {
+      .frames = 1, .height = raw.height, .width = raw.width, .measurements = raw.measurements};
   pair.change = pair.mean;
   const std::size_t count = raw.pixels_per_frame() * static_cast<std::size_t>(raw.measurements);
   const float* a = raw.frame(first);
@@ -363,16 +363,6 @@ std::vector<PairedNumber> paired_numbers(const FramePair& pair, const Decoder& d
       numbers.push_back({light_dn[static_cast<Eigen::Index>(k)], static_cast<double>(change[k])});
   }
   return numbers;
-}
-
-void add_point(const RunningStatistics& light_dn, const RunningStatistics& change, bool dark,
-               double averaged, PhotonTransfer& result) {
-  const double variance = 0.5 * averaged * change.variance();
-  result.points.push_back(
-      {.mean_dn = light_dn.mean(),
-       .variance_dn2 = {variance,
-                        variance * std::sqrt(2.0 / static_cast<double>(change.count() - 1))},
-       .dark = dark});
 }
 
 /// Adds a point per group of similar light.

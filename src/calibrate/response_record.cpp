@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/sample_times.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
-#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {
@@ -96,11 +96,7 @@ void read_text(const std::filesystem::path& path, const ResponseRecordOptions& o
 }
 
 void read_array(const std::filesystem::path& path, ResponseRecord& record) {
-  const NpyArray array = read_npy(path);
-  if (array.axes() != 1)
-    throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
-                                             describe_shape(array.shape())));
-  const std::vector<double> values = array.to_doubles();
+  const std::vector<double> values = read_one_axis(path);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!is_measured(values[i]))
       throw IoError(fmt::format("{}[{}]", path.string(), i),

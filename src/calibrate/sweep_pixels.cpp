@@ -34,7 +34,6 @@ DelayGroups delay_groups(const std::vector<double>& delay_periods) {
   if (delay_periods.empty()) return groups;
   std::vector<double> sorted = delay_periods;
   std::ranges::sort(sorted);
-  groups.first_periods = sorted.front();
   groups.span_periods = sorted.back() - sorted.front();
   const double tolerance = same * usual_step(sorted);
 
@@ -90,9 +89,6 @@ void require_whole_period(const DelayGroups& groups) {
                       begin, end, std::max(1.0, std::round(gap / usual) - 1)));
 }
 
-namespace {
-
-/// Residual of x (F, K) about its group means.
 Eigen::MatrixXd within_groups(const Eigen::MatrixXd& x, const DelayGroups& groups) {
   const Eigen::MatrixXd means = group_means(x, groups);
   Eigen::MatrixXd rest = x;
@@ -100,8 +96,6 @@ Eigen::MatrixXd within_groups(const Eigen::MatrixXd& x, const DelayGroups& group
     rest.row(f) -= means.row(groups.group_of_frame[static_cast<std::size_t>(f)]);
   return rest;
 }
-
-}  // namespace
 
 double sweep_time(int frame, int frames) {
   return frames > 1 ? static_cast<double>(frame) / (frames - 1) - 0.5 : 0.0;

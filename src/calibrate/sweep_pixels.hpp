@@ -16,7 +16,6 @@ struct DelayGroups {
   std::vector<int> group_of_frame;
   std::vector<int> repeats;  ///< frames (G)
   double span_periods = 0.0;
-  double first_periods = 0.0;
   bool equal_steps = false;  ///< positions are equally spaced over the period
   bool from_zero = false;    ///< positions are the rows of a table with N = G
 
@@ -43,6 +42,8 @@ double sweep_time(int frame, int frames);
 
 /// Means over the frames of each group (G, K).
 Eigen::MatrixXd group_means(const Eigen::MatrixXd& curve, const DelayGroups& groups);
+/// Residual of x (F, K) about its group means.
+Eigen::MatrixXd within_groups(const Eigen::MatrixXd& x, const DelayGroups& groups);
 
 /// Least squares fit to the differences within groups.
 /// @param curve           mean over pixels (F, K)

@@ -36,16 +36,11 @@ std::string_view ByteCursor::take_until(char end, std::string_view what) {
 }
 
 std::uint16_t ByteCursor::take_u16_little(std::string_view what) {
-  const auto bytes = take(2, what);
-  return static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[0]) |
-                                    std::to_integer<unsigned>(bytes[1]) << 8);
+  return load_little_endian<std::uint16_t>(take(2, what).data());
 }
 
 std::uint32_t ByteCursor::take_u32_little(std::string_view what) {
-  const auto bytes = take(4, what);
-  std::uint32_t value = 0;
-  for (int i = 3; i >= 0; --i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[i]);
-  return value;
+  return load_little_endian<std::uint32_t>(take(4, what).data());
 }
 
 void ByteCursor::fail_at(std::size_t position, std::string_view problem) const {

@@ -17,6 +17,8 @@ namespace tofsmith {
 
 namespace {
 
+using Pattern = Texture::Pattern;
+
 // World axes: x right, y down, z away from the camera; the table's top is y = 0.
 constexpr double first_book_z_m = 1.7;
 constexpr double wall_z_m = first_book_z_m + 2.0;
@@ -35,7 +37,6 @@ Shape book(double x_m, double z_m, double turn_rad, const Texture& cover) {
 /// @param width, height  > 0; the view is 60 degrees wide
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 6
 StagedScene table_top_scene(int width, int height) {
-  using Pattern = Texture::Pattern;
   StagedScene scene;
   scene.shapes = {
       Box{.centre = {0.0, 0.03, 1.6},
@@ -149,8 +150,6 @@ std::vector<Shape> open_hand(const Eigen::Isometry3d& hand_to_world, const Textu
   hand.add_forearm();
   return hand.take();
 }
-
-using Pattern = Texture::Pattern;
 
 constexpr double degrees = std::numbers::pi / 180;
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/shared/shared_progress.hpp"
 #include "simulate/lens_light.hpp"
 #include "simulate/pixel_capture.hpp"
 #include "tofsmith/core/error.hpp"
@@ -30,6 +31,60 @@ void SceneLight::validate(const SceneImage& scene, const Camera& camera) const {
       "must be one, or one for each of the " + std::to_string(scene.depth_m.size()) + " pixels");
   for (const Transient& transient : transients) transient.validate(range_m);
 }
+
+RawFrames empty_frames(int frames, int height, int width, int measurements) {
+  RawFrames raw{frames, height, width, measurements, {}};
+  raw.values.resize(raw.pixels_per_frame() * static_cast<std::size_t>(measurements) *
+                    static_cast<std::size_t>(frames));
+  return raw;
+}
+
+namespace {
+
+/// @param raw  (W, K)
+void expose_row(const RowCapture& source, const CollectedLight& collected, int frame,
+                std::int64_t row, float* raw) {
+  const auto taps = static_cast<std::ptrdiff_t>(source.tap_values());
+  std::vector<double> light(static_cast<std::size_t>(taps));
+  for (std::int64_t pixel = row * collected.width; pixel < (row + 1) * collected.width; ++pixel) {
+    std::copy_n(collected.taps.begin() + pixel * taps, taps, light.begin());
+    const double ambient_e_per_s = collected.ambient.empty()
+                                       ? source.ambient_e_per_s()
+                                       : collected.ambient[static_cast<std::size_t>(pixel)];
+    source.expose(frame, static_cast<std::uint64_t>(pixel), ambient_e_per_s, light, raw);
+    raw += source.measurements();
+  }
+}
+
+/// @param light  null: the direct light of the source's scene, one ray per pixel
+/// @param shared  advances by 1 per row
+void expose_frame(const RowCapture& source, const CollectedLight* light, int frame, RawFrames& raw,
+                  SharedProgress& shared) {
+  const std::int64_t row_values = std::int64_t{raw.width} * raw.measurements;
+  float* const values = raw.frame(frame);
+  parallel_for(raw.height, [&](std::int64_t row) {
+    if (light)
+      expose_row(source, *light, frame, row, values + row * row_values);
+    else
+      source.row(frame, static_cast<int>(row), values + row * row_values);
+    shared.add();
+  });
+}
+
+/// Exposes frames under the same light, each with independent noise.
+/// @throws Interrupted if `progress` cancels
+RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int frames,
+                          const Progress& progress) {
+  const int height = light ? light->height : source.scene().height(),
+            width = light ? light->width : source.scene().width();
+  RawFrames raw = empty_frames(frames, height, width, source.measurements());
+  SharedProgress shared(progress, static_cast<double>(frames) * height, "capture");
+  for (int frame = 0; frame < frames; ++frame) expose_frame(source, light, frame, raw, shared);
+  report(progress, 1.0, "capture");
+  return raw;
+}
+
+}  // namespace
 
 RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
                   const Camera& camera, const CaptureOptions& options, const Progress& progress) {
@@ -82,60 +137,6 @@ RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& ca
 
 namespace {
 
-/// @param raw  (W, K)
-void expose_row(const RowCapture& source, const CollectedLight& collected, int frame,
-                std::int64_t row, float* raw) {
-  const auto taps = static_cast<std::ptrdiff_t>(source.tap_values());
-  std::vector<double> light(static_cast<std::size_t>(taps));
-  for (std::int64_t pixel = row * collected.width; pixel < (row + 1) * collected.width; ++pixel) {
-    std::copy_n(collected.taps.begin() + pixel * taps, taps, light.begin());
-    const double ambient_e_per_s = collected.ambient.empty()
-                                       ? source.ambient_e_per_s()
-                                       : collected.ambient[static_cast<std::size_t>(pixel)];
-    source.expose(frame, static_cast<std::uint64_t>(pixel), ambient_e_per_s, light, raw);
-    raw += source.measurements();
-  }
-}
-
-}  // namespace
-
-RawFrames empty_frames(int frames, int height, int width, int measurements) {
-  RawFrames raw{frames, height, width, measurements, {}};
-  raw.values.resize(raw.pixels_per_frame() * static_cast<std::size_t>(measurements) *
-                    static_cast<std::size_t>(frames));
-  return raw;
-}
-
-RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int frames,
-                          const Progress& progress) {
-  const SceneImage& scene = source.scene();
-  const int height = light ? light->height : scene.height(),
-            width = light ? light->width : scene.width();
-  RawFrames raw = empty_frames(frames, height, width, source.measurements());
-  SharedProgress shared(progress, static_cast<double>(frames) * height, "capture");
-  for (int frame = 0; frame < frames; ++frame)
-    expose_frame(source, light, frame, raw.frame(frame), shared);
-  report(progress, 1.0, "capture");
-  return raw;
-}
-
-void expose_frame(const RowCapture& source, const CollectedLight* light, int frame, float* raw,
-                  SharedProgress& shared) {
-  const SceneImage& scene = source.scene();
-  const int height = light ? light->height : scene.height(),
-            width = light ? light->width : scene.width();
-  const std::int64_t row_values = std::int64_t{width} * source.measurements();
-  parallel_for(height, [&](std::int64_t row) {
-    if (light)
-      expose_row(source, *light, frame, row, raw + row * row_values);
-    else
-      source.row(frame, static_cast<int>(row), raw + row * row_values);
-    shared.add();
-  });
-}
-
-namespace {
-
 Image<float> repeated(const Image<float>& image, int n) {
   Image<float> result(n * image.height, n * image.width);
   for (int row = 0; row < result.height; ++row)
@@ -165,8 +166,7 @@ class MovingView {
  public:
   /// @param samples  rays per pixel along each axis
   MovingView(const StagedScene& scene, const StagedSetup& setup, int samples)
-      : scene_(scene),
-        setup_(setup),
+      : setup_(setup),
         samples_(samples),
         centres_(scene.view),
         parts_(samples == 1 ? PixelRays() : PixelRays(scene.view.divided(samples))) {
@@ -177,7 +177,6 @@ class MovingView {
     return samples_ == 1 ? centres_at(now) : see(parts_, now, samples_);
   }
   SceneImage centres_at(const StagedScene& now) const { return see(centres_, now, 1); }
-  StagedScene at(double time_s) const { return scene_.at(time_s); }
 
  private:
   SceneImage see(const PixelRays& pixel_rays, const StagedScene& now, int samples) const {
@@ -185,7 +184,6 @@ class MovingView {
     return rays_of(RayCaster(now.shapes, setup_.search_of), pixel_rays, now, setup_, samples);
   }
 
-  const StagedScene& scene_;
   const StagedSetup& setup_;
   int samples_;
   PixelRays centres_, parts_;
@@ -214,7 +212,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
     for (int exposure = 0; exposure < exposures; ++exposure) {
       report(progress, (frame + static_cast<double>(exposure) / exposures) / options.frames,
              "capture");
-      const StagedScene now = view.at(timed.exposure_middle_s(frame, exposure, exposures));
+      const StagedScene now = scene.at(timed.exposure_middle_s(frame, exposure, exposures));
       rays = view.rays_at(now);
       light = light_of(now, rays, setup, samples);
       light.validate(rays, camera);
@@ -223,8 +221,8 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
     }
     scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
     SharedProgress none({}, height, "capture");
-    expose_frame(source, &pixels, frame, result.raw.frame(frame), none);
-    result.truth.push_back(view.centres_at(view.at(timed.frame_middle_s(frame, exposures))));
+    expose_frame(source, &pixels, frame, result.raw, none);
+    result.truth.push_back(view.centres_at(scene.at(timed.frame_middle_s(frame, exposures))));
     result.near_m.push_back(std::move(pixels.near_m));
     result.far_m.push_back(std::move(pixels.far_m));
   }

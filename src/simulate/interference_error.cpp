@@ -11,6 +11,7 @@
 #include "simulate/depth_cells.hpp"
 #include "simulate/interference_light.hpp"
 #include "simulate/pixel_trials.hpp"
+#include "simulate/trial_errors.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -114,13 +115,6 @@ double ExpectedErrors::rmse_m(const OperatingPoint& point) const {
   return range_m_ * std::sqrt(interference_ + noise_e2 / (signal_e_per_s * signal_e_per_s));
 }
 
-DepthErrorMean mean_error(const std::vector<InterferencePoint>& points,
-                          Estimate InterferencePoint::*error_m) {
-  std::vector<Estimate> errors_m;
-  for (const InterferencePoint& point : points) errors_m.push_back(point.*error_m);
-  return {geometric_mean_of(errors_m), mean_of(errors_m)};
-}
-
 /// Measures pixels with the light of the other cameras.
 std::vector<PixelSums> run_trials(const PixelTrials& trials, const Camera& camera,
                                   const InterferenceLight& other, const Progress& progress) {
@@ -169,8 +163,8 @@ InterferenceReport interference_error(const CodeSet& code, const Camera& on,
                              .circular_rmse_m = sums[p].circular_rmse_m(),
                              .shares = shares.back()});
   }
-  result.linear = mean_error(result.points, &InterferencePoint::linear_mde_m);
-  result.circular = mean_error(result.points, &InterferencePoint::circular_mde_m);
+  result.linear = mean_over_points(result.points, &InterferencePoint::linear_mde_m);
+  result.circular = mean_over_points(result.points, &InterferencePoint::circular_mde_m);
   result.shares = mean_shares(shares);
   return result;
 }

@@ -7,7 +7,6 @@
 #include <complex>
 #include <numbers>
 #include <optional>
-#include <string>
 
 #include "camera/shared/actual_code.hpp"
 #include "core/shared/periodic.hpp"

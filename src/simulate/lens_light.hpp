@@ -78,6 +78,4 @@ void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRan
 /// @throws std::invalid_argument as StrayLight
 void scatter_light(const Image<float>& kernel, double ambient_e_per_s, CollectedLight& light);
 
-RawFrames empty_frames(int frames, int height, int width, int measurements);
-
 }  // namespace tofsmith

@@ -179,8 +179,7 @@ MotionReport motion_error(const CodeSet& code, const Camera& on, double velocity
   MotionReport result{.velocity_m_per_s = velocity_m_per_s,
                       .rms_bias_m = bias.rms_m(shift_m),
                       .mean_bias_m = bias.mean_m(shift_m),
-                      .surface = trials.of_surface(shift_m, parts[0]),
-                      .edge = {}};
+                      .surface = trials.of_surface(shift_m, parts[0])};
   if (bias.exposures() > 1) result.edge = trials.of_edge(parts[1]);
   report(progress, 1.0, "motion");
   return result;

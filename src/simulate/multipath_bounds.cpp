@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/simulate/bounds.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "camera/shared/depth_prior.hpp"
 #include "core/shared/decompositions.hpp"
 #include "core/shared/special_functions.hpp"
-#include "simulate/bound_means.hpp"
+#include "simulate/ziv_zakai.hpp"
 
 namespace tofsmith {
 

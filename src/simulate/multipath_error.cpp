@@ -22,40 +22,31 @@ namespace tofsmith {
 
 namespace {
 
-/// Trials of one operating point as one row, with their direct depths.
+/// Trials of one pixel as one row, with their direct depths.
 struct TrialFrame {
   RawFrames raw;
   std::vector<double> true_m;
 };
 
-TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera,
-                      const OperatingMultipath& later, const EvaluateOptions& options,
-                      std::size_t point) {
-  const OperatingPoint light = camera.operating.points()[point];
+/// @param options  with a number of trials and a seed
+/// @param add  adds the light of a trial: (random, direct depth, work, sum)
+template <typename Options, typename AddLight>
+TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera, const Options& options,
+                      std::uint64_t stream, double ambient_e_per_s, const AddLight& add) {
   const std::int64_t trials = options.trials;
-  TrialFrame frame;
-  frame.raw.frames = frame.raw.height = 1;
-  frame.raw.width = static_cast<int>(trials);
-  frame.raw.measurements = pixel.measurements();
-  frame.raw.values.resize(static_cast<std::size_t>(trials * pixel.measurements()));
-  frame.true_m.resize(static_cast<std::size_t>(trials));
+  TrialFrame frame{empty_frames(1, 1, static_cast<int>(trials), pixel.measurements()),
+                   std::vector<double>(static_cast<std::size_t>(trials))};
   const DepthPrior prior(camera);
   parallel_for_blocks(trials, 256, [&](IndexRange block) {
     const auto taps = static_cast<std::size_t>(pixel.tap_values());
     std::vector<double> work(taps), sum(taps);
     for (std::int64_t t = block.begin; t < block.end; ++t) {
-      RandomStream random(options.seed, point, static_cast<std::uint32_t>(t));
+      RandomStream random(options.seed, stream, static_cast<std::uint32_t>(t));
       const double part = (static_cast<double>(t) + random.uniform()) / static_cast<double>(trials);
       const double depth_m = prior.quantile(part) * camera.range_m();
-      const double albedo =
-          camera.operating.uniform_albedo ? random.uniform() : camera.operating.albedo;
-      const double signal_e_per_s = albedo * light.signal_e_per_s;
-      const double ratio = later.ratio_at(random.uniform());
-      const double delay_m = later.delay_at_m(random.uniform());
       sum.assign(taps, 0.0);
-      pixel.add_light(depth_m, signal_e_per_s, work, sum);
-      pixel.add_light(depth_m + delay_m, ratio * signal_e_per_s, work, sum);
-      pixel.expose(light.ambient_e_per_s, random, sum,
+      add(random, depth_m, work, sum);
+      pixel.expose(ambient_e_per_s, random, sum,
                    frame.raw.values.data() + t * pixel.measurements());
       frame.true_m[static_cast<std::size_t>(t)] = depth_m;
     }
@@ -63,18 +54,36 @@ TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera,
   return frame;
 }
 
-template <typename DepthOf>
+TrialFrame draw_two_returns(const PixelCapture& pixel, const Camera& camera,
+                            const OperatingMultipath& later, const EvaluateOptions& options,
+                            std::size_t point) {
+  const OperatingPoint light = camera.operating.points()[point];
+  return draw_frame(pixel, camera, options, point, light.ambient_e_per_s,
+                    [&](RandomStream& random, double depth_m, std::vector<double>& work,
+                        std::vector<double>& sum) {
+                      const double albedo = camera.operating.uniform_albedo
+                                                ? random.uniform()
+                                                : camera.operating.albedo;
+                      const double signal_e_per_s = albedo * light.signal_e_per_s;
+                      const double ratio = later.ratio_at(random.uniform());
+                      const double delay_m = later.delay_at_m(random.uniform());
+                      pixel.add_light(depth_m, signal_e_per_s, work, sum);
+                      pixel.add_light(depth_m + delay_m, ratio * signal_e_per_s, work, sum);
+                    });
+}
+
+template <typename AnyDecoder>
 OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera,
                                  const OperatingMultipath& later, const EvaluateOptions& options,
-                                 const Progress& progress, DepthOf&& depth_of) {
+                                 const AnyDecoder& decoder, const Progress& progress) {
   const double range_m = camera.range_m();
   std::vector<Estimate> linear_m, circular_m;
   const std::size_t points = camera.operating.points().size();
   const ProgressParts parts(progress, points);
   for (std::size_t p = 0; p < points; ++p) {
     report(parts[p], 0.0, "second returns");
-    const TrialFrame frame = draw_frame(pixel, camera, later, options, p);
-    const Image<float> depth_m = depth_of(frame.raw, parts[p]);
+    const TrialFrame frame = draw_two_returns(pixel, camera, later, options, p);
+    const Image<float> depth_m = decoder.decode(frame.raw, 0, parts[p]).depth_m;
     RunningStatistics linear, circular;
     for (std::size_t t = 0; t < frame.true_m.size(); ++t) {
       // Any value is equally good for a pixel without decoded depth.
@@ -89,62 +98,30 @@ OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera
   return {geometric_mean_of(linear_m), geometric_mean_of(circular_m)};
 }
 
-struct OperatingMultipathTrials {
-  OperatingMultipathTrials(const CodeSet& code, const Camera& on, const OperatingMultipath& met,
-                           const EvaluateOptions& how)
-      : camera(judged_camera(on)),
-        later(met),
-        options(how),
-        model(checked_model(code)),
-        pixel(model, camera) {}
-
-  OperatingMultipathError single_path(const Progress& progress) const {
-    const Decoder decoder(make_decoding_table(model, camera));
-    return error_of(pixel, camera, later, options, progress,
-                    [&](const RawFrames& raw, const Progress& part) {
-                      return decoder.decode(raw, 0, part).depth_m;
-                    });
-  }
-
-  /// @throws std::invalid_argument for codes that cannot separate two returns
-  OperatingMultipathError two_return(const Progress& progress) const {
-    MultipathOptions decoding;
-    decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.delay_m[0]);
-    decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
-    const TwoReturnDecoder decoder(make_decoding_table(model, camera), decoding);
-    return error_of(pixel, camera, later, options, progress,
-                    [&](const RawFrames& raw, const Progress& part) {
-                      return decoder.decode(raw, 0, part).depth_m;
-                    });
-  }
-
-  ForwardModel checked_model(const CodeSet& code) const {
-    options.validate();
-    later.validate(camera.range_m());
-    return ForwardModel(code, camera);
-  }
-
-  const Camera camera;
-  const OperatingMultipath& later;
-  const EvaluateOptions& options;
-  ForwardModel model;
-  PixelCapture pixel;
-};
-
 }  // namespace
 
-OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
+OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& on,
                                                     const OperatingMultipath& later,
                                                     const EvaluateOptions& options,
                                                     const Progress& progress) {
-  const OperatingMultipathTrials trials(code, camera, later, options);
+  const Camera camera = judged_camera(on);
+  options.validate();
+  later.validate(camera.range_m());
+  const ForwardModel model(code, camera);
+  const PixelCapture pixel(model, camera);
+  const DecodingTable table = make_decoding_table(model, camera);
   const ProgressParts parts(progress, {30, 70});
   OperatingMultipathReport result;
-  result.single_path = trials.single_path(parts[0]);
-  if (TwoReturnDecoder::why_not_decodable(make_decoding_table(trials.model, camera)))
+  result.single_path = error_of(pixel, camera, later, options, Decoder(table), parts[0]);
+  if (TwoReturnDecoder::why_not_decodable(table)) {
     report(progress, 1.0, "second returns");
-  else
-    result.two_return = trials.two_return(parts[1]);
+    return result;
+  }
+  MultipathOptions decoding;
+  decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.delay_m[0]);
+  decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
+  result.two_return =
+      error_of(pixel, camera, later, options, TwoReturnDecoder(table, decoding), parts[1]);
   return result;
 }
 
@@ -164,7 +141,6 @@ class CellTrials {
   CellTrials(const CodeSet& code, const Camera& camera, const MultipathErrorOptions& options)
       : options_(options),
         camera_(camera),
-        depths_(camera),
         model_(code, camera),
         pixel_(model_, camera),
         table_(make_decoding_table(model_, camera)),
@@ -174,21 +150,19 @@ class CellTrials {
   int measurements() const { return pixel_.measurements(); }
   const DecodingTable& table() const { return table_; }
 
-  /// @param decoder  for two returns or a tail; null: none
+  /// @param decoder  for two returns or a tail
   template <typename AnyDecoder>
-  MultipathCell cell(const CellLight& light, std::uint64_t number, const AnyDecoder* decoder,
-                     const Progress& progress) const;
+  MultipathCell cell(const CellLight& light, std::uint64_t number,
+                     const std::optional<AnyDecoder>& decoder, const Progress& progress) const;
 
  private:
-  RawFrames capture(const CellLight& light, std::uint64_t number,
-                    std::vector<double>& true_m) const;
+  TrialFrame capture(const CellLight& light, std::uint64_t number) const;
   void add_errors(const Image<float>& depth_m, const std::vector<double>& true_m, Estimate& bias_m,
                   Estimate& error_m) const;
   double cramer_rao_mae_m(const CellLight& light) const;
 
   const MultipathErrorOptions& options_;
   const Camera& camera_;
-  DepthPrior depths_;
   ForwardModel model_;
   PixelCapture pixel_;
   DecodingTable table_;
@@ -196,41 +170,23 @@ class CellTrials {
   MultipathBound bound_;
 };
 
-RawFrames CellTrials::capture(const CellLight& light, std::uint64_t number,
-                              std::vector<double>& true_m) const {
+TrialFrame CellTrials::capture(const CellLight& light, std::uint64_t number) const {
   const int points_per_bin = model_.straight_points_per_bin(16);
   std::optional<FineCorrelation> tail;
   if (light.is_tail)
     tail.emplace(tap_tail_table(model_, {light.delay_m, light.ratio}, camera_.range_m(),
                                 points_per_bin * model_.samples()),
                  points_per_bin);
-  RawFrames raw;
-  raw.frames = raw.height = 1;
-  raw.width = static_cast<int>(options_.trials);
-  raw.measurements = measurements();
-  raw.values.resize(static_cast<std::size_t>(raw.width) *
-                    static_cast<std::size_t>(raw.measurements));
-  true_m.resize(static_cast<std::size_t>(options_.trials));
-  parallel_for_blocks(options_.trials, 256, [&](IndexRange trials) {
-    const auto taps = static_cast<std::size_t>(pixel_.tap_values());
-    std::vector<double> work(taps), sum(taps);
-    for (std::int64_t t = trials.begin; t < trials.end; ++t) {
-      RandomStream random(options_.seed, number, static_cast<std::uint32_t>(t));
-      const double part =
-          (static_cast<double>(t) + random.uniform()) / static_cast<double>(options_.trials);
-      const double depth_m = depths_.quantile(part) * camera_.range_m();
-      sum.assign(taps, 0.0);
-      pixel_.add_light(depth_m, light.signal_e_per_s, work, sum);
-      const double later = light.ratio * light.signal_e_per_s;
-      if (tail)
-        pixel_.add_light(*tail, depth_m, later, work, sum);
-      else if (later > 0.0)
-        pixel_.add_light(depth_m + light.delay_m, later, work, sum);
-      pixel_.expose(options_.ambient_e_per_s, random, sum, raw.values.data() + t * measurements());
-      true_m[static_cast<std::size_t>(t)] = depth_m;
-    }
-  });
-  return raw;
+  const double later = light.ratio * light.signal_e_per_s;
+  return draw_frame(
+      pixel_, camera_, options_, number, options_.ambient_e_per_s,
+      [&](RandomStream&, double depth_m, std::vector<double>& work, std::vector<double>& sum) {
+        pixel_.add_light(depth_m, light.signal_e_per_s, work, sum);
+        if (tail)
+          pixel_.add_light(*tail, depth_m, later, work, sum);
+        else if (later > 0.0)
+          pixel_.add_light(depth_m + light.delay_m, later, work, sum);
+      });
 }
 
 void CellTrials::add_errors(const Image<float>& depth_m, const std::vector<double>& true_m,
@@ -257,25 +213,25 @@ double CellTrials::cramer_rao_mae_m(const CellLight& light) const {
 
 template <typename AnyDecoder>
 MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
-                               const AnyDecoder* decoder, const Progress& progress) const {
+                               const std::optional<AnyDecoder>& decoder,
+                               const Progress& progress) const {
   MultipathCell result;
   result.ratio = light.ratio;
   result.delay_m = light.delay_m;
   result.law_m = single_path_bias_m(light.ratio, light.delay_m);
   result.bias_m = result.error_m = {no_number, no_number};
   result.cramer_rao_mae_m = no_number;
-  std::vector<double> true_m;
-  const RawFrames raw = capture(light, number, true_m);
+  const TrialFrame frame = capture(light, number);
   const ProgressParts parts(progress, {10, 90});
-  add_errors(single_.decode(raw, 0, parts[0]).depth_m, true_m, result.single_bias_m,
+  add_errors(single_.decode(frame.raw, 0, parts[0]).depth_m, frame.true_m, result.single_bias_m,
              result.single_error_m);
   if (!decoder) return result;
-  const DepthImage image = decoder->decode(raw, 0, parts[1]);
-  add_errors(image.depth_m, true_m, result.bias_m, result.error_m);
+  const DepthImage image = decoder->decode(frame.raw, 0, parts[1]);
+  add_errors(image.depth_m, frame.true_m, result.bias_m, result.error_m);
   const auto share = [&](ReturnStatus status) {
     return static_cast<double>(
                std::count(image.returns.pixels.begin(), image.returns.pixels.end(), status)) /
-           static_cast<double>(true_m.size());
+           static_cast<double>(frame.true_m.size());
   };
   result.two_share = share(ReturnStatus::two);
   result.unresolved_share = share(ReturnStatus::unresolved);
@@ -291,11 +247,6 @@ std::optional<AnyDecoder> decoder_if_any(const DecodingTable& table,
     return std::nullopt;
   }
   return AnyDecoder(table, options);
-}
-
-template <typename AnyDecoder>
-const AnyDecoder* pointer_to(const std::optional<AnyDecoder>& decoder) {
-  return decoder ? &*decoder : nullptr;
 }
 
 }  // namespace
@@ -340,7 +291,7 @@ MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
       (2 + options.ratio.size() * (options.delay_m.size() + options.tail_m.size()));
   const ProgressParts parts(progress, cells);
   std::uint64_t number = 0;
-  const auto measure = [&](const CellLight& light, const auto* decoder) {
+  const auto measure = [&](const CellLight& light, const auto& decoder) {
     const Progress part = parts[number];
     report(part, 0.0, "multi-path");
     return trials.cell(light, number++, decoder, part);
@@ -348,13 +299,13 @@ MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
   for (const double signal : options.signal_e_per_s) {
     MultipathMaps maps;
     maps.signal_e_per_s = signal;
-    maps.single = measure({signal}, pointer_to(two));
-    maps.single_by_tail = measure({signal}, pointer_to(tails[tails.size() / 2]));
+    maps.single = measure({signal}, two);
+    maps.single_by_tail = measure({signal}, tails[tails.size() / 2]);
     for (const double r : options.ratio) {
       for (const double delay_m : options.delay_m)
-        maps.points.push_back(measure({signal, r, delay_m}, pointer_to(two)));
+        maps.points.push_back(measure({signal, r, delay_m}, two));
       for (std::size_t i = 0; i < tails.size(); ++i)
-        maps.tails.push_back(measure({signal, r, options.tail_m[i], true}, pointer_to(tails[i])));
+        maps.tails.push_back(measure({signal, r, options.tail_m[i], true}, tails[i]));
     }
     result.maps.push_back(std::move(maps));
   }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/shared/random.hpp"
-#include "core/shared/shared_progress.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/progress.hpp"
@@ -198,15 +197,6 @@ struct CollectedLight {
   CollectedLight(int height_, int width_, int tap_values_);
 };
 
-/// @param light  null: the direct light of the source's scene, one ray per pixel
-/// @param raw  (H, W, K)
-/// @param shared  advances by 1 per row
-void expose_frame(const RowCapture& source, const CollectedLight* light, int frame, float* raw,
-                  SharedProgress& shared);
-
-/// Exposes frames under the same light, each with independent noise.
-/// @throws Interrupted if `progress` cancels
-RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int frames,
-                          const Progress& progress);
+RawFrames empty_frames(int frames, int height, int width, int measurements);
 
 }  // namespace tofsmith

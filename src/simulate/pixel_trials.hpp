@@ -87,8 +87,7 @@ std::vector<PixelSums> PixelTrials::run(std::size_t first_stream, const Draw& dr
     for (std::int64_t begin = 0; begin < trials; begin += trials_at_once) {
       report(parts[p], static_cast<double>(begin) / static_cast<double>(trials), what);
       const std::int64_t count = std::min(trials_at_once, trials - begin);
-      RawFrames raw{1, 1, static_cast<int>(count), pixel_.measurements(), {}};
-      raw.values.resize(static_cast<std::size_t>(count * pixel_.measurements()));
+      RawFrames raw = empty_frames(1, 1, static_cast<int>(count), pixel_.measurements());
       std::vector<TrueDepths> true_m(static_cast<std::size_t>(count));
       parallel_for_blocks(count, 256, [&](IndexRange block) {
         for (std::int64_t i = block.begin; i < block.end; ++i) {

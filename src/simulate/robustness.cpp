@@ -223,26 +223,6 @@ std::vector<double> correlation_changes(const ForwardModel& nominal, const Forwa
 
 const Estimate& larger(const Estimate& a, const Estimate& b) { return b.value > a.value ? b : a; }
 
-class Judge {
- public:
-  Judge(DepthErrorKind kind, const RobustnessOptions& options)
-      : kind_(kind),
-        options_{.trials = options.trials,
-                 .seed = options.seed,
-                 .method = options.method,
-                 .unwrap_weights = options.unwrap_weights} {}
-
-  Estimate error_m(const CodeSet& code, const Camera& camera, const ForwardModel& model,
-                   const DecodingTable& believed, const Progress& progress) const {
-    const DepthTrials trials(model, camera, options_, believed);
-    return trial_errors(trials, code, camera, options_, progress).of(kind_).geometric_mean_m;
-  }
-
- private:
-  DepthErrorKind kind_;
-  EvaluateOptions options_;
-};
-
 }  // namespace
 
 double GeneratorLoss::ratio(DepthErrorKind kind) const {
@@ -294,7 +274,18 @@ RobustnessReport robustness(const CodeSet& code, const Camera& on, const Robustn
   const Camera camera = judged_camera(on);
   const std::vector<PerturbedCamera> cameras = perturbations(camera, options);
   const DepthErrorKind kind = camera.operating.error;
-  const Judge judge(kind, options);
+  const EvaluateOptions trials_options{.trials = options.trials,
+                                       .seed = options.seed,
+                                       .method = options.method,
+                                       .unwrap_weights = options.unwrap_weights};
+  const auto error_m = [&](const CodeSet& actual_code, const Camera& actual,
+                           const ForwardModel& model, const DecodingTable& believed,
+                           const Progress& part) {
+    const DepthTrials trials(model, actual, trials_options, believed);
+    return trial_errors(trials, actual_code, actual, trials_options, part)
+        .of(kind)
+        .geometric_mean_m;
+  };
   const ProgressParts parts(progress, 2 * cameras.size() + 1);
 
   const ForwardModel said(code, camera);
@@ -302,8 +293,7 @@ RobustnessReport robustness(const CodeSet& code, const Camera& on, const Robustn
   RobustnessReport report{.kind = kind,
                           .trials = options.trials + options.trials % 2,
                           .seed = options.seed,
-                          .nominal_m = judge.error_m(code, camera, said, said_table, parts[0]),
-                          .perturbed = {}};
+                          .nominal_m = error_m(code, camera, said, said_table, parts[0])};
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const Camera& actual = cameras[i].camera;
     const CodeSet actual_code = perturbed_code(code, cameras[i]);
@@ -313,9 +303,8 @@ RobustnessReport robustness(const CodeSet& code, const Camera& on, const Robustn
     const DecodingTable& calibrated = why_not_decodable(table) ? said_table : table;
     report.perturbed.push_back(
         {.name = cameras[i].name,
-         .calibrated_m = judge.error_m(actual_code, actual, model, calibrated, parts[2 * i + 1]),
-         .uncalibrated_m =
-             judge.error_m(actual_code, actual, model, said_table, parts[2 * i + 2])});
+         .calibrated_m = error_m(actual_code, actual, model, calibrated, parts[2 * i + 1]),
+         .uncalibrated_m = error_m(actual_code, actual, model, said_table, parts[2 * i + 2])});
   }
   return report;
 }

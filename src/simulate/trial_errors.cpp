@@ -24,13 +24,6 @@ Estimate root_mean_square(const PairSums& sums, std::int64_t trials, double scal
   return {scale * root, scale * mean.standard_error / (2.0 * root)};
 }
 
-DepthErrorMean mean_over_points(const std::vector<PointDepthError>& points,
-                                Estimate PointDepthError::*error) {
-  std::vector<Estimate> errors;
-  for (const PointDepthError& point : points) errors.push_back(point.*error);
-  return {geometric_mean_of(errors), mean_of(errors)};
-}
-
 class AdaptiveTrials {
  public:
   AdaptiveTrials(const Camera& camera, const EvaluateOptions& options)

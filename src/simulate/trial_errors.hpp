@@ -24,6 +24,13 @@ struct ErrorSums {
 std::vector<ErrorSums> sum_errors(const DepthTrials& trials, std::span<const TrialRound> rounds,
                                   double threshold_bin, const Progress& progress);
 
+template <typename Point>
+DepthErrorMean mean_over_points(const std::vector<Point>& points, Estimate Point::*error) {
+  std::vector<Estimate> errors;
+  for (const Point& point : points) errors.push_back(point.*error);
+  return {geometric_mean_of(errors), mean_of(errors)};
+}
+
 /// Returns depth errors without bounds.
 /// @param code, camera  of the trials
 DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, const Camera& camera,

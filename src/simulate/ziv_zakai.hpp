@@ -7,10 +7,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulate/bound_means.hpp"
 #include "tofsmith/camera/camera.hpp"
 
 namespace tofsmith {
+
+/// Ratio of mean absolute value to standard deviation of a normal deviation.
+inline double mae_per_sigma() { return std::sqrt(2.0 / std::numbers::pi); }
 
 /// Ziv-Zakai bound on the mean circular error, in periods, of any estimator of a delay that is
 /// uniform over the period and observed with normal noise:

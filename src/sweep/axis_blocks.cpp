@@ -19,13 +19,14 @@ std::int64_t size_of(const SweepSpec& spec, const AxisDigit& digit) {
   return static_cast<std::int64_t>(spec.axes[digit.front()].values.size());
 }
 
-}  // namespace
-
+/// Limits the product to 2^62.
 std::int64_t counted_product(std::int64_t a, std::int64_t b) {
   constexpr std::int64_t max_count = std::int64_t{1} << 62;
   if (a == 0 || b == 0) return 0;
   return a > max_count / b ? max_count : a * b;
 }
+
+}  // namespace
 
 std::vector<std::vector<AxisBlock>> axis_blocks(const SweepSpec& spec) {
   std::vector<AxisBlock> blocks;

@@ -23,9 +23,6 @@ struct AxisBlock {
 /// Blocks within a list advance together; the lists form a product whose last one varies fastest.
 std::vector<std::vector<AxisBlock>> axis_blocks(const SweepSpec& spec);
 
-/// Limits the product to 2^62.
-std::int64_t counted_product(std::int64_t a, std::int64_t b);
-
 /// Returns "axis samples" or "group optics", for errors.
 std::string name_of(const SweepSpec& spec, const AxisBlock& block);
 

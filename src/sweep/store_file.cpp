@@ -226,16 +226,16 @@ bool asks_for_a_writable_place(SqliteDatabase& database) {
   return code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
 }
 
+bool is_in_wal_mode(const std::filesystem::path& path) {
+  const std::string header = header_of(path);
+  return header.size() == header_bytes && header[18] == 2;
+}
+
 }  // namespace
 
 ReadableStore::Directory::~Directory() {
   std::error_code ignored;
   std::filesystem::remove_all(path, ignored);
-}
-
-bool is_in_wal_mode(const std::filesystem::path& path) {
-  const std::string header = header_of(path);
-  return header.size() == header_bytes && header[18] == 2;
 }
 
 SqliteDatabase open_store_file(const std::filesystem::path& path, const std::string& target,
@@ -277,7 +277,7 @@ ReadableStore read_store_file(const std::filesystem::path& path) {
   return store;
 }
 
-StoreHead read_store_head(SqliteDatabase& database, const std::filesystem::path& path) {
+std::string read_target(SqliteDatabase& database, const std::filesystem::path& path) {
   const std::string schema = database.text_of("PRAGMA user_version");
   const std::string version = database.text_of("SELECT value FROM meta WHERE name = 'tofsmith'");
   const std::string results = database.text_of("SELECT value FROM meta WHERE name = 'results'");
@@ -292,7 +292,7 @@ StoreHead read_store_head(SqliteDatabase& database, const std::filesystem::path&
   if (const std::string damage = database.text_of("PRAGMA quick_check(1)"); damage != "ok")
     throw IoError(path.string(),
                   fmt::format("is damaged ({}); restore a copy, or use another store", damage));
-  return {database.text_of("SELECT value FROM meta WHERE name = 'target'")};
+  return database.text_of("SELECT value FROM meta WHERE name = 'target'");
 }
 
 }  // namespace tofsmith

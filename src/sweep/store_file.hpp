@@ -91,12 +91,6 @@ class SqliteTransaction {
   SqliteDatabase* database_;
 };
 
-struct StoreHead {
-  std::string target;  ///< instruction set of the results
-};
-
-bool is_in_wal_mode(const std::filesystem::path& path);
-
 /// Creates the file if it is missing or empty.
 /// @param target  recorded in a new store
 /// @param network  name of its network file system, or "" to use WAL mode
@@ -117,7 +111,8 @@ struct ReadableStore {
 /// @throws IoError as SweepStore::read()
 ReadableStore read_store_file(const std::filesystem::path& path);
 
+/// Returns the instruction set of the results.
 /// @throws IoError if the store is damaged or of another version
-StoreHead read_store_head(SqliteDatabase& database, const std::filesystem::path& path);
+std::string read_target(SqliteDatabase& database, const std::filesystem::path& path);
 
 }  // namespace tofsmith

@@ -10,7 +10,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/result_json.hpp"
 #include "sweep/item_key.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -69,12 +68,9 @@ bool is_numeric(const SweepAxis& axis) {
                              [](const SettingValue& value) { return value.number.has_value(); });
 }
 
-NpyArray doubles(const std::vector<double>& values) {
-  return NpyArray::of<double>({values.size()}, values);
-}
-
-NpyArray integers(const std::vector<std::int64_t>& values) {
-  return NpyArray::of<std::int64_t>({values.size()}, values);
+template <typename Value>
+NpyArray list_array(const std::vector<Value>& values) {
+  return NpyArray::of<Value>({values.size()}, values);
 }
 
 NpyArray names(const std::vector<std::string>& texts) {
@@ -97,7 +93,7 @@ void add_texts(NpzArrays& arrays, const std::string& name, const std::vector<std
     if (is_new) distinct.push_back(text);
     indices.push_back(found->second);
   }
-  arrays[fmt::format("{}_index", name)] = integers(indices);
+  arrays[fmt::format("{}_index", name)] = list_array(indices);
   arrays[fmt::format("{}_names", name)] = names(distinct);
 }
 
@@ -172,7 +168,7 @@ NpzArrays sweep_arrays(const WorkList& list, std::span<const SweepResult> result
     items.push_back(result.item + 1);
     codes.push_back(result.error.code);
   });
-  arrays["item"] = integers(items);
+  arrays["item"] = list_array(items);
   add_texts(arrays, "code", codes);
   for (const std::size_t a : reported_axes(spec)) {
     const SweepAxis& axis = spec.axes[a];
@@ -184,7 +180,7 @@ NpzArrays sweep_arrays(const WorkList& list, std::span<const SweepResult> result
       texts.push_back(value.text);
     });
     if (is_numeric(axis))
-      arrays[axis.key] = doubles(numbers);
+      arrays[axis.key] = list_array(numbers);
     else
       add_texts(arrays, axis.key, texts);
   }
@@ -193,7 +189,7 @@ NpzArrays sweep_arrays(const WorkList& list, std::span<const SweepResult> result
     for_each_row(results, [&](const SweepResult&, const PointDepthError& point) {
       values.push_back(column.of(point));
     });
-    arrays[column.name] = doubles(values);
+    arrays[column.name] = list_array(values);
   }
   return arrays;
 }

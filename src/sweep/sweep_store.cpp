@@ -10,13 +10,51 @@
 
 #include "core/shared/hash.hpp"
 #include "sweep/file_system.hpp"
-#include "sweep/store_state.hpp"
+#include "sweep/store_file.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
+struct SweepStore::State {
+  std::filesystem::path path;
+  ReadableStore file;
+  std::string target;
+
+  SqliteDatabase& database() { return file.database; }
+};
+
 namespace {
+
+/// Per transaction, because other processes wait for its end.
+constexpr std::size_t max_at_once = 4096;
+
+constexpr std::array<std::string_view, 4> status_words = {"pending", "running", "finished",
+                                                          "failed"};
+constexpr std::string_view utc_now = "strftime('%Y-%m-%dT%H:%M:%SZ', 'now')";
+
+/// Detects a damaged result.
+std::string checksum_of(std::string_view key, std::string_view result) {
+  return fmt::format("{:016x}", fnv1a_64(fmt::format("{}\n{}", key, result)));
+}
+
+/// Reads a row of `key, settings, status, result, checksum, message, seconds`.
+/// @throws IoError if it is damaged
+StoredItem stored_item(const SqliteStatement& row, const std::filesystem::path& path) {
+  const std::string key = row.text(0);
+  const auto damaged = [&](std::string_view how) {
+    throw IoError(path.string(), fmt::format("is damaged (item {}: {}); restore a copy, or use "
+                                             "another store",
+                                             key, how));
+  };
+  StoredItem item{ItemStatus::pending, row.text(1), row.text(3), row.text(5), row.number(6)};
+  const auto word = std::ranges::find(status_words, row.text(2));
+  if (word == status_words.end()) damaged(fmt::format("status {}", row.text(2)));
+  item.status = static_cast<ItemStatus>(word - status_words.begin());
+  if (item.status == ItemStatus::finished && row.text(4) != checksum_of(key, item.result))
+    damaged("its checksum does not match");
+  return item;
+}
 
 /// Running items become pending.
 std::string_view settled(ItemStatus status) {
@@ -93,37 +131,6 @@ void SweepStore::merge(const std::filesystem::path& path,
   transaction.commit();
 }
 
-namespace {
-
-/// Per transaction, because other processes wait for its end.
-constexpr std::size_t max_at_once = 4096;
-
-constexpr std::array<std::string_view, 4> status_words = {"pending", "running", "finished",
-                                                          "failed"};
-constexpr std::string_view utc_now = "strftime('%Y-%m-%dT%H:%M:%SZ', 'now')";
-
-}  // namespace
-
-std::string checksum_of(std::string_view key, std::string_view result) {
-  return fmt::format("{:016x}", fnv1a_64(fmt::format("{}\n{}", key, result)));
-}
-
-StoredItem stored_item(const SqliteStatement& row, const std::filesystem::path& path) {
-  const std::string key = row.text(0);
-  const auto damaged = [&](std::string_view how) {
-    throw IoError(path.string(), fmt::format("is damaged (item {}: {}); restore a copy, or use "
-                                             "another store",
-                                             key, how));
-  };
-  StoredItem item{ItemStatus::pending, row.text(1), row.text(3), row.text(5), row.number(6)};
-  const auto word = std::ranges::find(status_words, row.text(2));
-  if (word == status_words.end()) damaged(fmt::format("status {}", row.text(2)));
-  item.status = static_cast<ItemStatus>(word - status_words.begin());
-  if (item.status == ItemStatus::finished && row.text(4) != checksum_of(key, item.result))
-    damaged("its checksum does not match");
-  return item;
-}
-
 SweepStore::SweepStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SweepStore::SweepStore(SweepStore&&) noexcept = default;
 SweepStore::~SweepStore() = default;
@@ -133,24 +140,24 @@ SweepStore SweepStore::open(const std::filesystem::path& path, const SweepStoreO
   const std::string network = options.network_file_system.value_or(network_file_system_at(path));
   auto state =
       std::make_unique<State>(State{path, {nullptr, open_store_file(path, here, network)}, {}});
-  state->head = read_store_head(state->database(), path);
-  if (state->head.target != here)
+  state->target = read_target(state->database(), path);
+  if (state->target != here)
     throw IoError(
         path.string(),
         fmt::format(
             "was computed on {}, and this process uses {}: results would differ in their last "
             "digits; set TOFSMITH_TARGET={} if this machine supports it, or use another store",
-            state->head.target, here, state->head.target));
+            state->target, here, state->target));
   return SweepStore(std::move(state));
 }
 
 SweepStore SweepStore::read(const std::filesystem::path& path) {
   auto state = std::make_unique<State>(State{path, read_store_file(path), {}});
-  state->head = read_store_head(state->database(), path);
+  state->target = read_target(state->database(), path);
   return SweepStore(std::move(state));
 }
 
-const std::string& SweepStore::target() const { return state_->head.target; }
+const std::string& SweepStore::target() const { return state_->target; }
 
 void SweepStore::add(std::span<const std::string> keys,
                      const std::function<std::string(std::size_t)>& settings) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "core/shared/text_numbers.hpp"
@@ -245,22 +244,13 @@ std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
   table.value("group", group);
   std::vector<SweepAxis> axes;
   for (const std::string& key : keys)
-    axes.push_back({.key = key,
-                    .values = {},
-                    .place = table.place_of(field),
-                    .crossed = false,
-                    .linked = !axes.empty(),
-                    .group = group});
+    axes.push_back(
+        {.key = key, .place = table.place_of(field), .linked = !axes.empty(), .group = group});
   for (const SettingValue& entry : read_axis_entries(table, field, keys)) {
     std::vector<SettingValue> values = values_of_keys(entry, keys);
     for (std::size_t k = 0; k < keys.size(); ++k) axes[k].values.push_back(std::move(values[k]));
   }
   return axes;
-}
-
-/// Rejects values that no item could use. @throws IoError naming file:line:column
-void check_axis_values(const SweepAxis& axis) {
-  for (const SettingValue& value : axis.values) check_value(axis, value);
 }
 
 constexpr EnumWords<SweepCombination, 2> combinations("SweepCombination", "combine", "product",
@@ -358,7 +348,7 @@ void check(const SweepSpec& spec) {
                   "found no code; expected a line such as `codes = [\"hamiltonian-k4\"]`");
   for (std::size_t i = 0; i < spec.axes.size(); ++i) {
     const SweepAxis& axis = spec.axes[i];
-    check_axis_values(axis);
+    for (const SettingValue& value : axis.values) check_value(axis, value);
     for (std::size_t j = 0; j < i; ++j)
       if (spec.axes[j].key == axis.key)
         throw IoError(axis.place, fmt::format("axis {} occurs twice; the first is at {}", axis.key,

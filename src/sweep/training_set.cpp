@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "core/shared/hash.hpp"
 #include "core/shared/random.hpp"
 #include "core/shared/text_numbers.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/shared/line_cursor.hpp"
@@ -92,7 +92,6 @@ std::vector<TrainingScene> training_scenes(std::span<const std::string> inputs) 
 
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Increased whenever the files for the same inputs change.
@@ -129,12 +128,6 @@ struct Example {
   LoadedTrainingScene scene;
 };
 
-NpyArray plane_array(const Image<float>& plane) {
-  return NpyArray::of<float>(
-      {static_cast<std::size_t>(plane.height), static_cast<std::size_t>(plane.width)},
-      plane.pixels);
-}
-
 /// Measured and true arrays.
 NpzArrays arrays_of(const Example& example, const RawFrames& raw, const Decoder& decoder) {
   const auto frames = static_cast<std::size_t>(raw.frames);
@@ -149,8 +142,8 @@ NpzArrays arrays_of(const Example& example, const RawFrames& raw, const Decoder&
   arrays["raw"] = NpyArray::of<float>(
       {frames, height, width, static_cast<std::size_t>(raw.measurements)}, raw.values);
   arrays["depth_m"] = NpyArray::of<float>({frames, height, width}, depth_m);
-  arrays["true_depth_m"] = plane_array(example.scene.image.depth_m);
-  arrays["albedo"] = plane_array(example.scene.image.albedo);
+  arrays["true_depth_m"] = array_of(example.scene.image.depth_m);
+  arrays["albedo"] = array_of(example.scene.image.albedo);
   return arrays;
 }
 

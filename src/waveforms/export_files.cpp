@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <sha2.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <span>
@@ -78,13 +75,6 @@ namespace {
 std::vector<std::byte> bytes_of_text(std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));
   return {bytes.begin(), bytes.end()};
-}
-
-/// Lower-case hexadecimal digits, as from `sha256sum`.
-std::string sha256_hex(std::span<const std::byte> bytes) {
-  std::array<char, SHA256_DIGEST_STRING_LENGTH> digits{};
-  return SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(),
-                    digits.data());
 }
 
 std::vector<std::byte> waveform_file(const QuantizedWaveform& waveform,

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
+#include "waveforms/generator_scripts.hpp"
 
 namespace tofsmith {
 
@@ -85,12 +85,6 @@ std::vector<GeneratorModel> make_models() {
   return models;
 }
 
-std::string upper(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = upper_case(c);
-  return result;
-}
-
 }  // namespace
 
 std::string GeneratorModel::format() const {
@@ -111,7 +105,7 @@ const std::vector<GeneratorModel>& generator_models() {
 }
 
 const GeneratorModel* find_generator_model(std::string_view name) {
-  const std::string wanted = upper(name);
+  const std::string wanted = upper(std::string(name));
   for (const GeneratorModel& model : generator_models()) {
     const bool same = wanted == model.name;
     // Accept the letter of the generation: 33522A and 33522B; AFG3022, AFG3022B and AFG3022C.
@@ -127,7 +121,7 @@ const GeneratorModel& generator_model(std::string_view name) {
   if (const GeneratorModel* model = find_generator_model(name)) return *model;
   std::vector<std::string> names;
   for (const GeneratorModel& model : generator_models()) names.push_back(model.name);
-  const std::string near = nearest_word(upper(name), names);
+  const std::string near = nearest_word(upper(std::string(name)), names);
   reject("model", fmt::format("'{}'", name),
          fmt::format("must be one of {}{}", known_generators,
                      near.empty() ? "" : fmt::format("; did you mean {}?", near)));

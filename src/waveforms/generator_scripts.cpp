@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -36,16 +37,11 @@ void check_scpi_outputs(std::vector<UploadStep>& steps, const UploadRequest& req
 }  // namespace
 
 UploadStep message_step(std::string what, std::string message) {
-  UploadStep step;
-  step.what = std::move(what);
-  step.message = std::move(message);
-  return step;
+  return {.what = std::move(what), .message = std::move(message)};
 }
 
 UploadStep output_on(std::string message) {
-  UploadStep step = message_step("switch outputs on", std::move(message));
-  step.switches_on = true;
-  return step;
+  return {.what = "switch outputs on", .message = std::move(message), .switches_on = true};
 }
 
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks) {
@@ -57,24 +53,20 @@ UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck>
 
 AnswerCheck number_check(int channel, std::string quantity, std::string field, double wanted,
                          double tolerance) {
-  AnswerCheck check;
-  check.channel = channel;
-  check.quantity = std::move(quantity);
-  check.field = std::move(field);
-  check.wanted = wanted;
-  check.tolerance = tolerance;
-  return check;
+  return {.channel = channel,
+          .quantity = std::move(quantity),
+          .field = std::move(field),
+          .wanted = wanted,
+          .tolerance = tolerance};
 }
 
 AnswerCheck word_check(int channel, std::string quantity, std::string field,
                        std::vector<std::string> texts, bool within) {
-  AnswerCheck check;
-  check.channel = channel;
-  check.quantity = std::move(quantity);
-  check.field = std::move(field);
-  check.texts = std::move(texts);
-  check.within = within;
-  return check;
+  return {.channel = channel,
+          .quantity = std::move(quantity),
+          .field = std::move(field),
+          .texts = std::move(texts),
+          .within = within};
 }
 
 double frequency_tolerance_hz(double frequency_hz, double relative) {
@@ -123,16 +115,21 @@ std::string text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::string memory_name(const QuantizedWaveform& waveform) {
-  const std::span codes(waveform.codes);
+std::string upper(std::string text) {
+  for (char& c : text) c = upper_case(c);
+  return text;
+}
+
+std::string sha256_hex(std::span<const std::byte> bytes) {
   std::array<char, SHA256_DIGEST_STRING_LENGTH> digits{};
-  const std::string hash = SHA256Data(reinterpret_cast<const std::uint8_t*>(codes.data()),
-                                      codes.size_bytes(), digits.data());
-  std::string name = fmt::format("{}{}_{}", waveform.arm == Arm::light ? "M" : "D",
-                                 waveform.index + 1, hash.substr(0, 7));
-  for (char& c : name)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return name;
+  return SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(),
+                    digits.data());
+}
+
+std::string memory_name(const QuantizedWaveform& waveform) {
+  const std::string hash = sha256_hex(std::as_bytes(std::span(waveform.codes)));
+  return upper(fmt::format("{}{}_{}", waveform.arm == Arm::light ? "M" : "D", waveform.index + 1,
+                           hash.substr(0, 7)));
 }
 
 }  // namespace tofsmith

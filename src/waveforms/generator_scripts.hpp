@@ -55,6 +55,9 @@ void end_scpi(std::vector<UploadStep>& steps, const UploadRequest& request);
 double scpi_load_ohm(double load_ohm);
 
 std::string text_of(std::span<const std::byte> bytes);
+std::string upper(std::string text);
+/// Lower-case hexadecimal digits, as from `sha256sum`.
+std::string sha256_hex(std::span<const std::byte> bytes);
 
 /// Tolerance of a frequency that was read back [Hz].
 double frequency_tolerance_hz(double frequency_hz, double relative);

@@ -21,6 +21,15 @@ void check(const QuantizedWaveform& waveform) {
           fmt::format("must be {}", keysight_levels));
 }
 
+/// One per line.
+std::string keysight_points_text(const QuantizedWaveform& waveform, std::string_view end_of_line) {
+  check(waveform);
+  std::string text;
+  for (const std::int32_t code : waveform.codes)
+    fmt::format_to(std::back_inserter(text), "{}{}", code - largest, end_of_line);
+  return text;
+}
+
 }  // namespace
 
 std::string keysight_arb_text(const QuantizedWaveform& waveform, std::string_view end_of_line) {
@@ -34,14 +43,6 @@ std::string keysight_arb_text(const QuantizedWaveform& waveform, std::string_vie
       end_of_line, waveform.sample_rate_hz, waveform.high_v, waveform.low_v, marker,
       waveform.points());
   return text + keysight_points_text(waveform, end_of_line);
-}
-
-std::string keysight_points_text(const QuantizedWaveform& waveform, std::string_view end_of_line) {
-  check(waveform);
-  std::string text;
-  for (const std::int32_t code : waveform.codes)
-    fmt::format_to(std::back_inserter(text), "{}{}", code - largest, end_of_line);
-  return text;
 }
 
 std::vector<std::byte> keysight_dac_bytes(const QuantizedWaveform& waveform) {
@@ -82,7 +83,7 @@ void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& 
   steps.back().more_s = request.patience_s;
   UploadStep check = message_step("read back " + waveform.name, "MMEM:UPL? " + file);
   check.answer = UploadStep::Answer::arb_file;
-  check.expected = keysight_points_text(waveform);
+  check.expected = keysight_points_text(waveform, "\n");
   check.more_s = request.patience_s;
   steps.push_back(std::move(check));
   steps.push_back(message_step("delete the file", "MMEM:DEL " + file));

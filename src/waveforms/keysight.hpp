@@ -21,10 +21,6 @@ inline constexpr std::int32_t keysight_levels = 65535;
 /// @throws std::invalid_argument if the waveform is invalid or does not have `keysight_levels`
 std::string keysight_arb_text(const QuantizedWaveform& waveform,
                               std::string_view end_of_line = "\n");
-/// Returns only the points, one per line.
-/// @throws std::invalid_argument as keysight_arb_text()
-std::string keysight_points_text(const QuantizedWaveform& waveform,
-                                 std::string_view end_of_line = "\n");
 /// Points for DATA:ARB:DAC: big-endian 16-bit numbers (the default of FORM:BORD).
 /// @throws std::invalid_argument as keysight_arb_text()
 std::vector<std::byte> keysight_dac_bytes(const QuantizedWaveform& waveform);

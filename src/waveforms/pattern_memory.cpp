@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <bit>
 #include <iterator>
+#include <sstream>
 #include <string>
 
 #include "core/shared/bits.hpp"
-#include "io/text/shared/line_cursor.hpp"
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
+#include "waveforms/generator_scripts.hpp"
 
 namespace tofsmith {
 
@@ -111,10 +113,10 @@ std::string heading(const PatternMemory& memory, std::string_view mark) {
   const auto line = [&](std::string_view words) {
     fmt::format_to(std::back_inserter(text), "{} {}\n", mark, words);
   };
-  LineCursor lines(memory.comment, "comment");
-  while (!lines.at_end()) {
+  std::istringstream lines(memory.comment);
+  for (std::string comment; std::getline(lines, comment);) {
     // Control characters in a name, such as CR in VHDL, must not end the comment.
-    std::string words(lines.next());
+    std::string words(trimmed(comment));
     std::ranges::replace_if(
         words, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     line(words);
@@ -135,12 +137,6 @@ void each_word(std::string& text, const PatternMemory& memory, Write&& write) {
   auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < memory.words.size(); ++i)
     write(out, memory.words[i], i + 1 == memory.words.size());
-}
-
-std::string upper(std::string text) {
-  for (char& c : text)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return text;
 }
 
 /// Calls `constant(name, value)`.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 #include "waveforms/generator_scripts.hpp"
 
@@ -51,8 +52,7 @@ WvdtCommand wvdt_command(const QuantizedWaveform& waveform, WvdtPoints points, i
                       .name = waveform.name,
                       .frequency_hz = waveform.repetition_hz(),
                       .amplitude_vpp = waveform.amplitude_vpp(),
-                      .offset_v = waveform.offset_v(),
-                      .points = {}};
+                      .offset_v = waveform.offset_v()};
   for (const std::int32_t code : waveform.codes)
     command.points.push_back(static_cast<std::int16_t>(code - levels / 2));
   return command;
@@ -62,9 +62,7 @@ namespace {
 
 void check_command(const WvdtCommand& command, int bits) {
   const auto is_word = [](const std::string& text) {
-    return std::ranges::all_of(text, [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-    });
+    return std::ranges::all_of(text, [](char c) { return is_letter_or_digit(c) || c == '_'; });
   };
   require(command.channel >= 1, "WVDT channel", command.channel, "must be >= 1");
   require(!command.name.empty() && is_word(command.name), "WVDT name", command.name,
@@ -111,8 +109,7 @@ constexpr double siglent_frequency_tolerance = 1e-5;  // answers have six digits
 constexpr WvdtPoints x_points = WvdtPoints::bits16_little_endian;
 
 std::string wvdt_message(const WvdtCommand& command, WaveHeader header) {
-  const std::vector<std::byte> bytes = wvdt_bytes(command, x_points);
-  std::string message(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string message = text_of(wvdt_bytes(command, x_points));
   const std::size_t mark = message.find("WAVEDATA,");
   if (header == WaveHeader::length)
     message.insert(mark, fmt::format("LENGTH,{}B,", 2 * command.points.size()));

@@ -37,8 +37,7 @@ void draw(const std::vector<std::int32_t>& codes, std::span<std::byte> picture) 
   }
 }
 
-}  // namespace
-
+/// Big-endian 16-bit numbers, as for TRACe:DATA.
 std::vector<std::byte> tektronix_afg_bytes(const QuantizedWaveform& waveform) {
   waveform.validate();
   require(waveform.levels <= tektronix_afg_full_levels, waveform.name + " levels", waveform.levels,
@@ -51,6 +50,8 @@ std::vector<std::byte> tektronix_afg_bytes(const QuantizedWaveform& waveform) {
   }
   return bytes;
 }
+
+}  // namespace
 
 std::vector<std::byte> tektronix_tfw(const QuantizedWaveform& waveform) {
   const std::vector<std::byte> points = tektronix_afg_bytes(waveform);

@@ -16,12 +16,9 @@ namespace tofsmith {
 inline constexpr std::int32_t tektronix_afg_levels = 16383;
 inline constexpr std::int32_t tektronix_afg_full_levels = 16384;
 
-/// Returns big-endian 16-bit numbers, as for TRACe:DATA.
-/// @throws std::invalid_argument if the waveform is invalid or has more than 2^14 levels
-std::vector<std::byte> tektronix_afg_bytes(const QuantizedWaveform& waveform);
 /// Returns a .tfw file for AFG1000 to AFG31000: a header of 512 bytes with a preview, then the
 /// points, without frequency and voltages.
-/// @throws std::invalid_argument as tektronix_afg_bytes()
+/// @throws std::invalid_argument if the waveform is invalid or has more than 2^14 levels
 std::vector<std::byte> tektronix_tfw(const QuantizedWaveform& waveform);
 /// Returns a .wfm file ("MAGIC 1000") for AWG400 to AWG700, AWG5000 and AWG7000: points as
 /// little-endian floats with a byte of markers. Marker 1 is the trigger of every period, marker 2

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "waveforms/generator_scripts.hpp"
 
@@ -28,9 +27,6 @@ UploadChannel channel_of(const WaveformExport& exported, const UploadSelection& 
   }
   return given;
 }
-
-constexpr EnumWords<WaveHeader, 3> header_words("WaveHeader", "wave_header",
-                                                words_of(WaveHeader{}));
 
 }  // namespace
 
@@ -75,8 +71,6 @@ std::string parse_output_filter(std::string_view word) {
   if (word == "off") return "OFF";
   reject("filter", word, "must be step, normal or off");
 }
-
-WaveHeader parse_wave_header(std::string_view word) { return header_words.parse(word); }
 
 namespace {
 

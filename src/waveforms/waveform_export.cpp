@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "camera/shared/actual_code.hpp"
@@ -19,16 +18,13 @@ namespace tofsmith {
 
 namespace {
 
-constexpr auto per_waveform = FormatContent::one_waveform;
-
 WaveformFormat memory_format(std::string name, std::string extension, std::string description) {
   return {.name = std::move(name),
           .extension = std::move(extension),
           .description = std::move(description),
           .content = FormatContent::words,
           .default_bits = 1,
-          .trigger = "top bit of every word",
-          .variants = {}};
+          .trigger = "top bit of every word"};
 }
 
 std::vector<WaveformFormat> generator_formats() {
@@ -36,38 +32,30 @@ std::vector<WaveformFormat> generator_formats() {
       {.name = "siglent-csv",
        .extension = ".csv",
        .description = "Siglent SDG, EasyWave CSV of 16384 rows",
-       .content = per_waveform,
        .min_points = 16384,
        .max_points = 16384,
        .skips_points = true,
-       .trigger = "",
        .variants = {{"easywave", "\"data length\", empty lines, rows counted from 1"},
                     {"lenth", "\"data lenth\", empty lines, rows by time"},
                     {"commas", "\"data length\", lines of one comma, rows by time"}}},
       {.name = "siglent-wvdt14",
        .extension = ".wvdt",
        .description = "Siglent SDG800 to SDG5000, WVDT command of 14 bits",
-       .content = per_waveform,
        .min_points = 16384,
        .max_points = 16384,
        .levels = 1 << 14,
        .max_bits = 14,
        .skips_points = true,
-       .trigger = "",
        .variants = {{"little-endian", "low byte first"}, {"big-endian", "high byte first"}}},
       {.name = "siglent-wvdt16",
        .extension = ".wvdt",
        .description = "Siglent SDG X series, WVDT command of 16 bits",
-       .content = per_waveform,
        .levels = 1 << 16,
        .default_bits = 16,
-       .skips_points = true,
-       .trigger = "",
-       .variants = {}},
+       .skips_points = true},
       {.name = "keysight-arb",
        .extension = ".arb",
        .description = "Keysight 33500 and 33600, .arb text",
-       .content = per_waveform,
        .min_points = 8,
        .max_points = 1'000'000,
        .levels = keysight_levels,
@@ -77,17 +65,14 @@ std::vector<WaveformFormat> generator_formats() {
       {.name = "tek-tfw",
        .extension = ".tfw",
        .description = "Tektronix AFG1000 to AFG31000, .tfw",
-       .content = per_waveform,
        .max_points = 131072,
        .levels = tektronix_afg_levels,
        .max_bits = 14,
        .skips_points = true,
-       .trigger = "",
        .variants = {{"16382", "codes 0 .. 16382"}, {"16383", "codes 0 .. 16383"}}},
       {.name = "tek-wfm",
        .extension = ".wfm",
        .description = "Tektronix AWG400 to AWG700, .wfm \"MAGIC 1000\"",
-       .content = per_waveform,
        .min_points = 256,
        .multiple_of = 4,
        .trigger = "marker 1; marker 2 is the first point",
@@ -110,8 +95,7 @@ std::vector<WaveformFormat> make_formats() {
                      .description = "plain table: time, trigger, all waveforms",
                      .content = FormatContent::all_columns,
                      .max_bits = 24,
-                     .trigger = "column trigger",
-                     .variants = {}});
+                     .trigger = "column trigger"});
   return formats;
 }
 

@@ -154,8 +154,6 @@ std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
 /// Parses "step", "normal" or "off" into the name of a Keysight filter.
 /// @throws std::invalid_argument
 std::string parse_output_filter(std::string_view word);
-/// Parses "length", "plain" or "minimal". @throws std::invalid_argument
-WaveHeader parse_wave_header(std::string_view word);
 
 /// A script for one exposure and all models that accept the same messages.
 struct ExportedScript {

@@ -81,11 +81,25 @@ Eigen::MatrixXd columns_of(NpyArray array, std::string_view place) {
   return matrix_of(array, place);
 }
 
+std::vector<double> read_one_axis(const std::filesystem::path& path) {
+  const NpyArray array = read_npy(path);
+  if (array.axes() != 1)
+    throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
+                                             describe_shape(array.shape())));
+  return array.to_doubles();
+}
+
 NpyArray array_of(const Eigen::MatrixXd& matrix) {
   const RowMajor rows = matrix;
   return NpyArray::of<double>(
       {static_cast<std::size_t>(rows.rows()), static_cast<std::size_t>(rows.cols())},
       std::span<const double>(rows.data(), static_cast<std::size_t>(rows.size())));
+}
+
+NpyArray array_of(const Image<float>& image) {
+  return NpyArray::of<float>(
+      {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)},
+      image.pixels);
 }
 
 }  // namespace tofsmith

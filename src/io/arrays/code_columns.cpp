@@ -73,6 +73,12 @@ Waveform waveform_of(const Eigen::VectorXd& samples) {
   return two_levels ? Waveform::binary_from_samples(samples, peak) : Waveform::sampled(samples);
 }
 
+std::vector<Waveform> waveforms_of(const Eigen::MatrixXd& columns) {
+  std::vector<Waveform> list;
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) list.push_back(waveform_of(columns.col(i)));
+  return list;
+}
+
 constexpr std::string_view modulation_rule = "power over average power, >= 0";
 constexpr std::string_view demodulation_rule = "a gain in [0, 1]";
 constexpr std::string_view gate_rule =
@@ -128,13 +134,10 @@ CodeSet code_of_columns(std::string_view file, NamedMatrix modulation, NamedMatr
     limit(demodulation, 0.0, 1.0, demodulation_rule);
 
   const int exposures = exposures_of(modulation.values.cols(), layout, file);
-  std::vector<Waveform> light, gains;
-  if (layout.is_signed) {
-    for (Eigen::Index e = 0; e < modulation.values.cols(); ++e)
-      light.push_back(waveform_of(modulation.values.col(e)));
-    return created(file, modulation.values.rows(), 1, std::move(light),
+  if (layout.is_signed)
+    return created(file, modulation.values.rows(), 1, waveforms_of(modulation.values),
                    {{}, std::move(demodulation.values)});
-  }
+  std::vector<Waveform> light, gains;
   for (int e = 0; e < exposures; ++e) {
     const Eigen::Index first = column_of(e, 0, exposures, layout.taps, layout.order);
     light.push_back(waveform_of(modulation.values.col(first)));
@@ -189,20 +192,16 @@ CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_sig
     limit(matrix, lowest, highest, expected);
     return matrix.values;
   };
-  const auto waveforms = [](const Eigen::MatrixXd& columns) {
-    std::vector<Waveform> list;
-    for (Eigen::Index i = 0; i < columns.cols(); ++i) list.push_back(waveform_of(columns.col(i)));
-    return list;
-  };
   Demodulations demodulation;
   if (is_signed)
     demodulation.weights = values(demodulations, -1.0, 1.0, weight_rule);
   else
-    demodulation.gains = waveforms(values(demodulations, 0.0, 1.0, demodulation_rule));
-  return created(
-      file, table.values.rows(), static_cast<int>(demodulations.size() / modulations.size()),
-      waveforms(values(modulations, 0.0, std::numeric_limits<double>::infinity(), modulation_rule)),
-      std::move(demodulation));
+    demodulation.gains = waveforms_of(values(demodulations, 0.0, 1.0, demodulation_rule));
+  return created(file, table.values.rows(),
+                 static_cast<int>(demodulations.size() / modulations.size()),
+                 waveforms_of(values(modulations, 0.0, std::numeric_limits<double>::infinity(),
+                                     modulation_rule)),
+                 std::move(demodulation));
 }
 
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,

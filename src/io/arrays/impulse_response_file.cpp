@@ -6,10 +6,10 @@
 
 #include <cmath>
 
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/sample_times.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/number_table.hpp"
 
 namespace tofsmith {
@@ -45,14 +45,6 @@ void read_text(const std::filesystem::path& path, std::optional<double> time_ste
   response.samples.assign(samples.values.begin(), samples.values.end());
 }
 
-void read_array(const std::filesystem::path& path, ImpulseResponse& response) {
-  const NpyArray array = read_npy(path);
-  if (array.axes() != 1)
-    throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
-                                             describe_shape(array.shape())));
-  response.samples = array.to_doubles();
-}
-
 }  // namespace
 
 ImpulseResponse read_impulse_response(const std::filesystem::path& path,
@@ -61,7 +53,7 @@ ImpulseResponse read_impulse_response(const std::filesystem::path& path,
   response.kind = ImpulseResponse::Kind::file;
   response.file = path.string();
   if (known_extension(path, {".csv", ".txt", ".tsv", ".dat", ".npy"}) == ".npy")
-    read_array(path, response);
+    response.samples = read_one_axis(path);
   else
     read_text(path, time_step_s, response);
   const double found_s = response.time_step_s;

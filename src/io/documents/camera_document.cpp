@@ -142,11 +142,7 @@ using Json = nlohmann::ordered_json;
 
 Json default_of(const KeyDescription& described, const Json& defaults) {
   if (described.may_be_absent || !described.key.applies) return nullptr;
-  const Json::json_pointer place("/" + [&] {
-    std::string path = described.name;
-    std::replace(path.begin(), path.end(), '.', '/');
-    return path;
-  }());
+  const Json::json_pointer place = pointer_to(described.name);
   return defaults.contains(place) ? defaults[place] : Json();
 }
 

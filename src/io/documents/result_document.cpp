@@ -38,6 +38,34 @@ Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
   return entry;
 }
 
+Json robustness_json(const RobustnessReport& report) {
+  const auto add_ratio = [&](Json& error_m) {
+    error_m["ratio"] = error_m["geometric_mean_m"].get<double>() / report.nominal_m.value;
+  };
+  Json entry;
+  for_each_field(report, [&](const auto& field) {
+    write_field(entry, field);
+    if (field.name != std::string_view("nominal_m")) return;
+    entry["worst_calibrated"] = estimate_json(report.worst_calibrated_m());
+    entry["worst_uncalibrated"] = estimate_json(report.worst_uncalibrated_m());
+  });
+  for (const char* name : {"nominal", "worst_calibrated", "worst_uncalibrated"})
+    add_ratio(entry[name]);
+  for (Json& perturbed : entry["perturbations"])
+    for (const char* name : {"calibrated", "uncalibrated"}) add_ratio(perturbed[name]);
+  return entry;
+}
+
+/// Returns version, seed, trials, outlier threshold and camera.
+Json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials,
+                   double outlier_threshold_m) {
+  return {{"tofsmith", TOFSMITH_VERSION},
+          {"seed", seed},
+          {"trials", trials},
+          {"outlier_threshold_m", outlier_threshold_m},
+          {"camera", camera_document(camera)}};
+}
+
 }  // namespace
 
 DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind) {
@@ -65,24 +93,6 @@ DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader
   report.outlier_threshold_m = document.member("outlier_threshold_m").number(0.0, infinity, 0.0);
   for (PointDepthError& point : report.points) point.trials = report.trials;
   return report;
-}
-
-Json robustness_json(const RobustnessReport& report) {
-  const auto add_ratio = [&](Json& error_m) {
-    error_m["ratio"] = error_m["geometric_mean_m"].get<double>() / report.nominal_m.value;
-  };
-  Json entry;
-  for_each_field(report, [&](const auto& field) {
-    write_field(entry, field);
-    if (field.name != std::string_view("nominal_m")) return;
-    entry["worst_calibrated"] = estimate_json(report.worst_calibrated_m());
-    entry["worst_uncalibrated"] = estimate_json(report.worst_uncalibrated_m());
-  });
-  for (const char* name : {"nominal", "worst_calibrated", "worst_uncalibrated"})
-    add_ratio(entry[name]);
-  for (Json& perturbed : entry["perturbations"])
-    for (const char* name : {"calibrated", "uncalibrated"}) add_ratio(perturbed[name]);
-  return entry;
 }
 
 Json generators_json(const std::vector<GeneratorReport>& reports) {
@@ -134,16 +144,8 @@ std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry) {
   return reports;
 }
 
-Json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials,
-                   double outlier_threshold_m) {
-  return {{"tofsmith", TOFSMITH_VERSION},
-          {"seed", seed},
-          {"trials", trials},
-          {"outlier_threshold_m", outlier_threshold_m},
-          {"camera", camera_document(camera)}};
-}
-
-Json design_json(const Camera& camera, const DesignResult& result, const DesignOptions& options) {
+std::string design_document(const Camera& camera, const DesignResult& result,
+                            const DesignOptions& options) {
   Json document = document_head(camera, options.seed, options.trials,
                                 result.winner().error.outlier_threshold_m);
   document["best"] = result.winner().code.name();
@@ -171,7 +173,7 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
   }
   document["left_out"] = result.left_out;
   document["explanation"] = result.explanation;
-  return document;
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string generators_document(const std::vector<GeneratorReport>& reports) {
@@ -231,11 +233,6 @@ std::string requirements_document(const Camera& camera, const Requirements& foun
         {"bandwidth", found.map->bandwidth}, {"power", found.map->power}, {"error_m", errors}};
   }
   return document.dump(2, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string design_document(const Camera& camera, const DesignResult& result,
-                            const DesignOptions& options) {
-  return design_json(camera, result, options).dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 namespace {

@@ -23,12 +23,6 @@ Image<float> image_from_array(const NpyArray& array, std::string_view file) {
   return image;
 }
 
-NpyArray array_from_image(const Image<float>& image) {
-  return NpyArray::of<float>(
-      {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)},
-      image.pixels);
-}
-
 std::string name_called_or_only(const NpzReader& archive, std::string_view name,
                                 std::string_view file) {
   if (archive.contains(name)) return std::string(name);

@@ -15,8 +15,6 @@ namespace tofsmith {
 /// @throws IoError unless the array contains floats of shape (H, W)
 Image<float> image_from_array(const NpyArray& array, std::string_view file);
 
-NpyArray array_from_image(const Image<float>& image);
-
 /// @throws IoError if the archive has several arrays and none with this name
 std::string name_called_or_only(const NpzReader& archive, std::string_view name,
                                 std::string_view file);

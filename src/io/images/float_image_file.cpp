@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/image_limits.hpp"
 #include "io/images/array_image.hpp"
 #include "io/images/depth_kind_fields.hpp"
@@ -215,7 +216,7 @@ void write_depth(const std::filesystem::path& path, const Image<float>& depth_m,
   if (extension == ".png") {
     write_png(path, png_from_depth(depth_m, kind, path.string()), policy);
   } else if (extension == ".npz") {
-    NpzArrays arrays = {{"depth", array_from_image(depth_m)}};
+    NpzArrays arrays = {{"depth", array_of(depth_m)}};
     add_depth_kind(kind, arrays);
     write_npz(path, arrays, policy);
   } else if (extension == ".exr") {
@@ -278,8 +279,8 @@ void write_float_image(const std::filesystem::path& path, const Image<float>& im
                        std::string_view name, OutputPolicy policy) {
   const std::string extension = known_extension(path, {".npy", ".npz", ".exr", ".pfm"});
   require_pixels(image);
-  if (extension == ".npy") write_npy(path, array_from_image(image), policy);
-  if (extension == ".npz") write_npz(path, {{std::string(name), array_from_image(image)}}, policy);
+  if (extension == ".npy") write_npy(path, array_of(image), policy);
+  if (extension == ".npz") write_npz(path, {{std::string(name), array_of(image)}}, policy);
   if (extension == ".exr") write_exr(path, {{exr_channel(name), image}}, policy);
   if (extension == ".pfm")
     write_pfm(path, PfmImage{image.height, image.width, 1, 1.0, image.pixels}, policy);

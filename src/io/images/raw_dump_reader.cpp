@@ -125,12 +125,10 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
                                     describe_shape(shape), max_axis));
   check_measurements(shape, options, file);
   check_image_size(file, axes.height, axes.width);
-  RawFrames sizes;
-  sizes.frames = static_cast<int>(axes.frames);
-  sizes.height = static_cast<int>(axes.height);
-  sizes.width = static_cast<int>(axes.width);
-  sizes.measurements = static_cast<int>(axes.measurements);
-  return sizes;
+  return {.frames = static_cast<int>(axes.frames),
+          .height = static_cast<int>(axes.height),
+          .width = static_cast<int>(axes.width),
+          .measurements = static_cast<int>(axes.measurements)};
 }
 
 void check_measurements(const RawFormat& format, int expected, const std::string& file) {

@@ -98,9 +98,7 @@ std::string describe_sizes(const RawFramesReader& reader) {
 }  // namespace
 
 RawFramesReader::RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options)
-    : layout_(options.layout) {
-  options.format ? open_dump(path, options) : open_array(path, options, false);
-}
+    : RawFramesReader(std::vector{path}, options) {}
 
 RawFramesReader::RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options,
                                  OneMeasurement)
@@ -356,11 +354,7 @@ RawFrames RawFramesReader::read_frame(int index) const {
 RawFrames read_raw_frames(const std::vector<std::filesystem::path>& files,
                           const RawReadOptions& options) {
   const RawFramesReader reader(files, options);
-  RawFrames all;
-  all.frames = reader.frames();
-  all.height = reader.height();
-  all.width = reader.width();
-  all.measurements = reader.measurements();
+  RawFrames all{reader.frames(), reader.height(), reader.width(), reader.measurements(), {}};
   all.values.resize(all.pixels_per_frame() * static_cast<std::size_t>(all.measurements) *
                     static_cast<std::size_t>(all.frames));
   std::vector<std::byte> buffer;
@@ -375,17 +369,9 @@ RawFrames read_raw_frames(const std::filesystem::path& path, std::optional<int> 
   return read_raw_frames(std::vector{path}, {.measurements = measurements});
 }
 
-namespace {
-
-std::string raw_extension(const std::filesystem::path& path) {
-  return known_extension(path, {".npy", ".npz"});
-}
-
-}  // namespace
-
 void write_raw_frames(const std::filesystem::path& path, const RawFrames& raw,
                       OutputPolicy policy) {
-  const std::string extension = raw_extension(path);
+  const std::string extension = known_extension(path, {".npy", ".npz"});
   require(raw.frames >= 1, "frames", raw.frames, "must be >= 1");
   require(raw.height >= 1, "height", raw.height, "must be >= 1");
   require(raw.width >= 1, "width", raw.width, "must be >= 1");

@@ -1,7 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/meshes/mesh_caster.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 
+// Embree 3 and 4 have different functions for ray packets.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
@@ -10,15 +16,69 @@
 #include <array>
 #include <new>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "scene/shared/mesh_surface.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/mesh_file.hpp"
 
 namespace tofsmith {
 
 namespace {
+
+template <typename Handle, void (*Release)(Handle)>
+struct EmbreeRelease {
+  void operator()(Handle handle) const { Release(handle); }
+};
+template <typename Handle, void (*Release)(Handle)>
+using EmbreeOwner = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease<Handle, Release>>;
+using EmbreeDevice = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
+using EmbreeScene = EmbreeOwner<RTCScene, rtcReleaseScene>;
+
+/// Intersects packets of rays with one mesh.
+///
+/// Embree works in single precision and only selects the triangle. Coordinates are relative to the
+/// mesh's centre, in units of its size, and rays start where they reach its bounding sphere, so
+/// that the accuracy does not depend on the position of mesh and camera.
+class MeshCaster : public MeshSearch {
+ public:
+  /// @param mesh  must outlive the caster
+  MeshCaster(const Mesh& mesh, EmbreeDevice device);
+
+  void trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
+             std::int32_t shape) const override;
+
+ private:
+  /// World coordinates; the weights of corners b and c are gradient . (point - corner).
+  struct Facet {
+    Eigen::Vector3d corner, normal, gradient_b, gradient_c;
+    std::uint32_t triangle;
+  };
+  Hit hit_facet(const Facet& facet, const Ray& ray, double share_b, double share_c) const;
+  void build();
+
+  EmbreeDevice device_;  ///< outlives scene_
+  const Mesh* mesh_;
+  std::vector<Facet> facets_;  ///< without triangles of zero area
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  double radius_m_ = 0.0;  ///< of the bounding sphere about centre_
+  EmbreeScene scene_;
+};
+
+/// Active rays are -1, inactive ones 0.
+void intersect_coherent(const int* active, RTCScene scene, RTCRayHit8& packet) {
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect8(active, scene, &packet, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(active, scene, &context, &packet);
+#endif
+}
 
 /// Rounding errors, relative to the mesh's size.
 constexpr double single_precision = 1e-6;
@@ -37,8 +97,6 @@ Item* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTC
   throw_on_error(device, "new buffer");
   return static_cast<Item*>(buffer);
 }
-
-}  // namespace
 
 EmbreeDevice new_embree_device() {
   EmbreeDevice device(rtcNewDevice(nullptr), [](RTCDevice made) {
@@ -178,6 +236,8 @@ void MeshCaster::trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
     }
   }
 }
+
+}  // namespace
 
 MeshSearchMaker embree_search() {
   return [device = EmbreeDevice()](const Mesh& mesh) mutable -> std::unique_ptr<const MeshSearch> {

@@ -25,31 +25,6 @@ std::string mesh_extension(const std::filesystem::path& path) {
   return known_extension(path, {".obj", ".ply", ".stl"});
 }
 
-}  // namespace
-
-bool is_mesh_file(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension == ".obj" || extension == ".ply" || extension == ".stl";
-}
-
-TriangleMesh parse_mesh(std::span<const std::byte> content, std::string_view file) {
-  const std::string name(file);
-  const std::string extension = mesh_extension(name);
-  if (content.empty()) throw IoError(name, "found an empty file; expected a mesh");
-  if (extension == ".obj")
-    return triangles_of(
-        parse_obj({reinterpret_cast<const char*>(content.data()), content.size()}, name), name);
-  return triangles_of(
-      extension == ".ply" ? parse_ply_mesh(content, name) : parse_stl(content, name), name);
-}
-
-TriangleMesh read_mesh(const std::filesystem::path& path) {
-  mesh_extension(path);
-  return parse_mesh(read_binary_file(path, max_mesh_file_bytes), path.string());
-}
-
-namespace {
-
 constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
 
 void add_corner(const std::array<float, 3>& position, PolygonSoup& soup) {
@@ -142,8 +117,7 @@ class TextReader {
   PolygonSoup soup_;
 };
 
-}  // namespace
-
+/// Reads a binary file, or text that ends with endsolid.
 PolygonSoup parse_stl(std::span<const std::byte> content, std::string_view file) {
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
   const bool may_be_text = text.starts_with("solid");
@@ -162,8 +136,6 @@ PolygonSoup parse_stl(std::span<const std::byte> content, std::string_view file)
   }
   return TextReader(text, file).read();
 }
-
-namespace {
 
 /// A backslash at the end of a line continues it.
 std::string next_line(std::string_view& text, int& lines) {
@@ -185,6 +157,8 @@ struct ObjCounts {
   std::int64_t vertices = 0, texture_coordinates = 0, normals = 0;
 };
 
+/// Requires vertices with at least three finite numbers, and faces with at least three corners and
+/// existing indices. Skips other lines.
 class ObjReader {
  public:
   ObjReader(std::string_view text, std::string_view file) : text_(text), file_(file) {}
@@ -307,8 +281,24 @@ class ObjReader {
 
 }  // namespace
 
-PolygonSoup parse_obj(std::string_view text, std::string_view file) {
-  return ObjReader(text, file).read();
+bool is_mesh_file(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".obj" || extension == ".ply" || extension == ".stl";
+}
+
+TriangleMesh parse_mesh(std::span<const std::byte> content, std::string_view file) {
+  const std::string name(file);
+  const std::string extension = mesh_extension(name);
+  if (content.empty()) throw IoError(name, "found an empty file; expected a mesh");
+  const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
+  if (extension == ".obj") return triangles_of(ObjReader(text, name).read(), name);
+  return triangles_of(
+      extension == ".ply" ? parse_ply_mesh(content, name) : parse_stl(content, name), name);
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& path) {
+  mesh_extension(path);
+  return parse_mesh(read_binary_file(path, max_mesh_file_bytes), path.string());
 }
 
 }  // namespace tofsmith

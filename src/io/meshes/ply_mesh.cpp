@@ -46,12 +46,6 @@ constexpr std::array<TypeName, 16> type_names = {{{"char", PlyType::int8},
                                                   {"double", PlyType::float64},
                                                   {"float64", PlyType::float64}}};
 
-std::string_view take_line(ByteCursor& cursor) {
-  std::string_view line = cursor.take_until('\n', "a header line");
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  return line;
-}
-
 /// Returns the type named "uchar", "float32" etc., if any.
 std::optional<PlyType> ply_type_of(std::string_view word) {
   const auto found = std::find_if(type_names.begin(), type_names.end(),
@@ -70,10 +64,6 @@ std::vector<std::string_view> words_of_ply(std::string_view line) {
     start = end;
   }
   return words;
-}
-
-std::vector<std::string_view> words_of_ply_line(ByteCursor& cursor) {
-  return words_of_ply(take_line(cursor));
 }
 
 std::size_t ply_item_size(PlyType type) {
@@ -174,7 +164,7 @@ class HeaderReader {
 
   std::vector<std::string_view> next() {
     start_ = cursor_.position();
-    return words_of_ply_line(cursor_);
+    return words_of_ply(cursor_.take_until('\n', "a header line"));
   }
 
   PlyFormat format(const std::vector<std::string_view>& words) const {

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <unordered_map>
 
 #include "tofsmith/core/error.hpp"

@@ -34,15 +34,8 @@ struct PolygonSoup {
 // Readers throw IoError with the line or byte, the value found and the value expected. Their memory
 // is a small multiple of the file's size.
 
-/// Requires vertices with at least three finite numbers, and faces with at least three corners and
-/// existing indices. Skips other lines.
-PolygonSoup parse_obj(std::string_view text, std::string_view file);
-
 /// Reads any elements and lists, text or binary in either byte order.
 PolygonSoup parse_ply_mesh(std::span<const std::byte> content, std::string_view file);
-
-/// Reads a binary file, or text that ends with endsolid.
-PolygonSoup parse_stl(std::span<const std::byte> content, std::string_view file);
 
 /// Triangulates polygons and merges equal corners. Texture coordinates are kept if all corners have
 /// them.

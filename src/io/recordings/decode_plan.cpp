@@ -167,7 +167,6 @@ Preparation preparation_of(const DecodeRequest& request, const DecodingTable& ta
                 .keeps_filtered = request.mixed || wants_averaged || is_limited},
       .find_mixed = request.mixed.has_value(),
       .undistort = request.undistort,
-      .stray_kernel = {},
       .hdr = request.hdr,
       .sliding = sliding_exposures(request, table)};
   if (preparation.steps.time_filter && filter) preparation.steps.time_filter->before_filter = true;

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,8 +23,6 @@
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/io/image_file.hpp"
-#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
 
@@ -151,7 +148,6 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
                          .layout = request.layout,
                          .max_in_memory = static_cast<std::uint64_t>(1e6 * request.memory_mb),
                          .dataset = request.dataset,
-                         .format = {},
                          .marking = table.marking};
   if (!request.raw_format.empty()) {
     options.format = read_raw_format(request.raw_format);

@@ -13,7 +13,6 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
 

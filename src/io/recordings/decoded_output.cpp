@@ -221,6 +221,19 @@ std::size_t writing_bytes_per_pixel(std::string_view extension,
   return 2 * depth;  // .pfm, .png: converted, and the file
 }
 
+/// Fails early if write_planes() cannot write to this path. @throws IoError
+void check_decoded_output(const std::filesystem::path& path, OutputPolicy policy) {
+  const std::string extension = path.extension().string();
+  constexpr std::array<std::string_view, 7> known{".npy", ".npz", ".exr", ".pfm",
+                                                  ".png", ".ply", ".pcd"};
+  if (std::ranges::find(known, extension) == known.end())
+    throw IoError(path.string(),
+                  fmt::format("unknown extension \"{}\"; expected .npy, .npz, .exr, .pfm, .png "
+                              "(16 bits, mm), .ply or .pcd",
+                              extension));
+  const AtomicFile probe(path, policy);  // never committed
+}
+
 }  // namespace
 
 void write_planes(const std::filesystem::path& path, const DepthImage& decoded,
@@ -264,18 +277,6 @@ bool holds_points(const std::filesystem::path& path) {
 bool holds_depth_only(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   return extension == ".npy" || extension == ".pfm" || extension == ".png";
-}
-
-void check_decoded_output(const std::filesystem::path& path, OutputPolicy policy) {
-  const std::string extension = path.extension().string();
-  constexpr std::array<std::string_view, 7> known{".npy", ".npz", ".exr", ".pfm",
-                                                  ".png", ".ply", ".pcd"};
-  if (std::ranges::find(known, extension) == known.end())
-    throw IoError(path.string(),
-                  fmt::format("unknown extension \"{}\"; expected .npy, .npz, .exr, .pfm, .png "
-                              "(16 bits, mm), .ply or .pcd",
-                              extension));
-  const AtomicFile probe(path, policy);  // never committed
 }
 
 std::filesystem::path DecodeTarget::frame_path(int frame) const {
@@ -336,7 +337,7 @@ void DecodeOutput::take(int frame, int first_row, int rows, const DepthImage& pl
   if (first && !(target_.stack && frame > target_.first_frame)) open_files(frame);
   for (std::size_t i = 0; i < files_.size(); ++i)
     files_[i]->append(items_of(planes, target_.planes[i], rows));
-  if (last && !target_.stack) close_files();
+  if (last && !target_.stack) finish();
 }
 
 void DecodeOutput::open_files(int frame) {
@@ -350,11 +351,9 @@ void DecodeOutput::open_files(int frame) {
         shape, target_.policy));
 }
 
-void DecodeOutput::close_files() {
+void DecodeOutput::finish() {
   for (const auto& file : files_) file->commit();
   files_.clear();
 }
-
-void DecodeOutput::finish() { close_files(); }
 
 }  // namespace tofsmith

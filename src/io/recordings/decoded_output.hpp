@@ -69,9 +69,6 @@ void write_planes(const std::filesystem::path& path, const DepthImage& decoded,
 /// Returns true for .npy, .pfm and .png.
 bool holds_depth_only(const std::filesystem::path& path);
 
-/// Fails early if write_planes() cannot write to this path. @throws IoError
-void check_decoded_output(const std::filesystem::path& path, OutputPolicy policy);
-
 /// Destination of decoded frames.
 struct DecodeTarget {
   std::filesystem::path path;  ///< numbered for several frames, unless stacked
@@ -115,14 +112,13 @@ class DecodeOutput {
   ///   its last rows
   /// @throws IoError if a file cannot be written
   void take(int frame, int first_row, int rows, const DepthImage& planes);
-  /// Must be called once, last.
+  /// Must be called once, last: closes the files.
   void finish();
 
   const DecodeTarget& target() const { return target_; }
 
  private:
   void open_files(int frame);
-  void close_files();
 
   DecodeTarget target_;
   std::vector<std::unique_ptr<NpyItemWriter>> files_;

@@ -5,15 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
 #include "core/shared/pixel_runs.hpp"
-#include "core/shared/working_threads.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
@@ -80,18 +77,10 @@ int frames_of_mean(const Preparation& preparation, int recorded, int index) {
 }
 
 RawFrames copy_of(const RawView& raw) {
-  RawFrames copy{.frames = 1,
-                 .height = raw.height,
-                 .width = raw.width,
-                 .measurements = raw.measurements,
-                 .values = {}};
-  copy.values.reserve(static_cast<std::size_t>(raw.pixels()) *
-                      static_cast<std::size_t>(raw.measurements));
-  for_each_run(raw, 0, raw.pixels(), [&](const auto* pixel, std::int64_t length, std::int64_t) {
-    for (std::int64_t x = 0; x < length; ++x, pixel += raw.column_stride)
-      for (int k = 0; k < raw.measurements; ++k)
-        copy.values.push_back(static_cast<float>(pixel[k * raw.measurement_stride]));
-  });
+  RawFrames copy{1, raw.height, raw.width, raw.measurements, {}};
+  copy.values.resize(static_cast<std::size_t>(raw.pixels()) *
+                     static_cast<std::size_t>(raw.measurements));
+  copy_pixels(raw, 0, raw.pixels(), copy.values.data());
   return copy;
 }
 

@@ -2,35 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/text/shared/line_cursor.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/shared/text_numbers.hpp"
-#include "tofsmith/core/error.hpp"
-#include "tofsmith/io/csv.hpp"
 
 namespace tofsmith {
-
-std::string_view LineCursor::next() {
-  ++line_;
-  if (at_end()) fail("the text ends here; expected another line");
-  const std::size_t end = std::min(text_.find('\n', position_), text_.size());
-  const std::string_view line = text_.substr(position_, end - position_);
-  position_ = end + 1;
-  return trimmed(line);
-}
-
-void LineCursor::expect_end() {
-  while (!at_end())
-    if (const auto line = next(); !line.empty())
-      fail(fmt::format("found '{}'; expected the end of the file", line.substr(0, 60)));
-}
-
-void LineCursor::fail(std::string_view problem) const {
-  throw IoError(fmt::format("{}:{}", file_, line_), problem);
-}
 
 std::vector<TextLine> content_lines(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <locale>
@@ -30,6 +29,18 @@ std::string joined(const std::string& list, const std::string& element) {
   return list.empty() ? element : fmt::format("{}, {}", list, element);
 }
 
+std::string describe(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (node.is_array()) return "a list";
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  node.visit([&](const auto& value) {
+    if constexpr (toml::is_value<decltype(value)>) out << value;
+  });
+  return out.str();
+}
+
 std::string one_line(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   if (const auto* text = node.as_string()) return quoted(text->get());
@@ -46,12 +57,7 @@ std::string one_line(const toml::node& node) {
     }
     return fmt::format("{{ {} }}", inside);
   }
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  node.visit([&](const auto& value) {
-    if constexpr (toml::is_value<decltype(value)>) out << value;
-  });
-  return out.str();
+  return describe(node);
 }
 
 /// Describes long settings by their beginning.
@@ -149,18 +155,6 @@ void leave_out(toml::table& root, std::string_view key, std::string_view setting
                   fmt::format("found no key {} to remove{}", key,
                               near.empty() ? "" : fmt::format("; did you mean {}?", near)));
   }
-}
-
-std::string describe(const toml::node& node) {
-  if (node.is_table()) return "a table";
-  if (node.is_array()) return "a list";
-  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  node.visit([&](const auto& value) {
-    if constexpr (toml::is_value<decltype(value)>) out << value;
-  });
-  return out.str();
 }
 
 }  // namespace
@@ -314,7 +308,6 @@ void TableReader::raw_numbers(std::string_view key, std::vector<double>& target)
   if (!node->is_array()) mistyped(full(key), *node, "a list of numbers, such as [65535]");
   target.clear();
   for (const toml::node& element : *node->as_array()) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const std::string word = element.value<std::string>().value_or("");
     if (element.is_floating_point())
       target.push_back(element.as_floating_point()->get());

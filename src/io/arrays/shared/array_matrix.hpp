@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/npy.hpp"
 
@@ -45,6 +46,10 @@ Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place);
 /// Accepts one axis (a single column) or two.
 Eigen::MatrixXd columns_of(NpyArray array, std::string_view place);
 
+/// @throws IoError if the file is not an array of one axis
+std::vector<double> read_one_axis(const std::filesystem::path& path);
+
 NpyArray array_of(const Eigen::MatrixXd& matrix);
+NpyArray array_of(const Image<float>& image);
 
 }  // namespace tofsmith

@@ -19,8 +19,6 @@ nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rota
 /// @throws IoError naming file and member
 DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document);
 
-nlohmann::ordered_json robustness_json(const RobustnessReport& report);
-
 /// @throws IoError if the text is not the name of a kind
 DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind);
 
@@ -30,12 +28,5 @@ nlohmann::ordered_json generator_loss_json(const GeneratorLoss& loss, DepthError
 nlohmann::ordered_json measurements_json(const Candidate& candidate);
 /// Omits histories; none if the entry has no `per_measurement`.
 std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry);
-
-/// Returns version, seed, trials, outlier threshold and camera.
-nlohmann::ordered_json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials,
-                                     double outlier_threshold_m);
-
-nlohmann::ordered_json design_json(const Camera& camera, const DesignResult& result,
-                                   const DesignOptions& options);
 
 }  // namespace tofsmith
