@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/shared/random.hpp"
-#include "decode_codes.hpp"
+#include "decode_frame.hpp"
 #include "exactness_pixels.hpp"
 #include "reference_bins.hpp"
 #include "reference_decoder.hpp"

@@ -6,7 +6,7 @@
 
 #include "asked_figures.hpp"
 #include "decode_frame.hpp"
-#include "reference_curve.hpp"
+#include "reference_bins.hpp"
 
 namespace tofsmith::benchmarks {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "decode_codes.hpp"
+#include "decode_frame.hpp"
 #include "fast_random.hpp"
 
 namespace tofsmith::benchmarks {

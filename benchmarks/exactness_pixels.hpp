@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "reference_curve.hpp"
+#include "reference_bins.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith::benchmarks {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "asked_figures.hpp"
-#include "design/exposure_bound.hpp"
+#include "design/exposure_shares.hpp"
 #include "design/exposure_split.hpp"
 #include "design/frequencies/square_error.hpp"
 #include "tofsmith/design/design.hpp"

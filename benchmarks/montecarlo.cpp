@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "asked_figures.hpp"
-#include "decode_codes.hpp"
+#include "decode_frame.hpp"
 #include "in_turns.hpp"
 #include "simulate/trial_errors.hpp"
 #include "tofsmith/core/build_info.hpp"

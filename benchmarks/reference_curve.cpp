@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "reference_curve.hpp"
+#include "reference_bins.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

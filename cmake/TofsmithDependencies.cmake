@@ -93,7 +93,15 @@ if(TOFSMITH_BUILD_PYTHON)
   set(TOFSMITH_PYTHON_ROOT "" CACHE PATH
       "Unpacked Debian packages with the headers of another python3 and its pybind11, to build for")
   if(TOFSMITH_PYTHON_ROOT)
-    include(TofsmithOtherPython)
+    # The extension links against no Python library, so headers are enough.
+    file(GLOB Python_INCLUDE_DIR "${TOFSMITH_PYTHON_ROOT}/usr/include/python3.*")
+    find_package(Python 3.11 COMPONENTS Development.Module)
+    set(pybind11_DIR "${TOFSMITH_PYTHON_ROOT}/usr/lib/cmake/pybind11")
+    # pybind11 would query the interpreter for these.
+    set(PYTHON_MODULE_EXTENSION
+        ".cpython-${Python_VERSION_MAJOR}${Python_VERSION_MINOR}-${CMAKE_LIBRARY_ARCHITECTURE}.so")
+    set(PYTHON_MODULE_DEBUG_POSTFIX "")
+    set(PYTHON_IS_DEBUG OFF)
   else()
     find_package(Python 3.11 COMPONENTS Interpreter Development.Module NumPy)
   endif()

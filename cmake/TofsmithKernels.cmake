@@ -3,10 +3,10 @@
 # Adds the sources of the kernels as strings to tofsmith::gpu, for compilation on devices, and links
 # OpenCL. Included from src/CMakeLists.txt.
 
-# Adds NAME, a string declared in HEADER, with the concatenated text of the given files.
+# Adds NAME, a string declared in HEADER: kernel_parameters.h, numbers.cl and the given files.
 function(tofsmith_add_kernels name header)
   set(kernel_text)
-  foreach(file IN LISTS ARGN)
+  foreach(file kernel_parameters.h numbers.cl ${ARGN})
     set(path "${CMAKE_CURRENT_SOURCE_DIR}/gpu/${file}")
     file(READ "${path}" text)
     string(APPEND kernel_text "${text}")
@@ -22,11 +22,10 @@ const std::string_view @name@ = R\"kernels(@kernel_text@)kernels\";
   target_sources(tofsmith_gpu PRIVATE "${source}")
 endfunction()
 
-tofsmith_add_kernels(decode_kernels device_tables.hpp decode_parameters.h numbers.cl bins.cl planes.cl)
-tofsmith_add_kernels(filter_kernels device_tables.hpp decode_parameters.h numbers.cl filter_parameters.h
-                     windows.cl slopes.cl)
-tofsmith_add_kernels(time_kernels device_time_filter.hpp decode_parameters.h numbers.cl time_parameters.h time.cl)
-tofsmith_add_kernels(mean_kernels device_raw.hpp decode_parameters.h numbers.cl means.cl)
+tofsmith_add_kernels(decode_kernels device_tables.hpp bins.cl planes.cl)
+tofsmith_add_kernels(filter_kernels device_tables.hpp windows.cl slopes.cl)
+tofsmith_add_kernels(time_kernels device_time_filter.hpp time.cl)
+tofsmith_add_kernels(mean_kernels device_raw.hpp means.cl)
 
 if(TOFSMITH_HAS_OPENCL)
   target_link_libraries(tofsmith_gpu PRIVATE OpenCL::OpenCL)

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/distinct_values.hpp"
+#include "camera/frequency_lists.hpp"
 #include "camera/shared/actual_code.hpp"
 #include "camera/shared/listed_exposures.hpp"
 #include "tofsmith/code/families.hpp"

@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/common_frequency.hpp"
-#include "camera/distinct_values.hpp"
+#include "camera/frequency_lists.hpp"
 #include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "code/shared/hamiltonian.hpp"
+#include "code/shared/family_members.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "code/shared/family_rules.hpp"
 #include "core/shared/random.hpp"
 
 namespace tofsmith {

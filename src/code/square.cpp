@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "code/square.hpp"
+#include "code/shared/family_members.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "code/shared/family_rules.hpp"
 #include "code/shared/on_intervals.hpp"
 
 namespace tofsmith {

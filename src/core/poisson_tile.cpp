@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/poisson_attempt.hpp"
+#include "core/shared/random.hpp"
 #include "core/shared/random_tile.hpp"
 
 #ifndef TOFSMITH_CORE_POISSON_TILE_CONSTANTS

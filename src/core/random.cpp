@@ -4,10 +4,9 @@
 
 #include <Random123/philox.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
-
-#include "core/poisson_attempt.hpp"
 
 namespace tofsmith {
 
@@ -66,6 +65,56 @@ std::uint64_t combine_keys(std::uint64_t a, std::uint64_t b) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
   return z ^ (z >> 31);
+}
+
+namespace {
+
+/// Uniform in (0, 1).
+double open_uniform(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
+
+/// ln n! for n < 16.
+double log_factorial(double n) {
+  static const std::array<double, 16> table = [] {
+    std::array<double, 16> values{};
+    for (std::size_t i = 2; i < values.size(); ++i)
+      values[i] = values[i - 1] + std::log(static_cast<double>(i));
+    return values;
+  }();
+  return table[static_cast<std::size_t>(n)];
+}
+
+/// ln of the probability of k; for k >= 16 by Stirling's series, exact in double precision.
+double log_probability(double k, double mean) {
+  if (k < 16.0) return k * std::log(mean) - mean - log_factorial(k);
+  const double r = 1.0 / k, r2 = r * r;
+  const double series = r * (1.0 / 12 - r2 * (1.0 / 360 - r2 * (1.0 / 1260 - r2 / 1680)));
+  return k * std::log(mean * r) - mean + k - 0.5 * std::log(k) - 0.91893853320467274178 - series;
+}
+
+}  // namespace
+
+std::optional<double> attempted_poisson(double mean, std::uint32_t u_word, std::uint32_t v_word) {
+  const double u = open_uniform(u_word) - 0.5, v = open_uniform(v_word);
+  const double us = 0.5 - std::abs(u);
+  const double b = 0.931 + 2.53 * std::sqrt(mean), a = -0.059 + 0.02483 * b;
+  const double k = std::floor((2.0 * a / us + b) * u + mean + 0.43);
+  if (us >= 0.07 && v <= 0.9277 - 3.6224 / (b - 2.0)) return k;
+  if (k < 0.0 || (us < 0.013 && v > us)) return std::nullopt;
+  const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
+  if (std::log(v * inverse_alpha / (a / (us * us) + b)) > log_probability(k, mean))
+    return std::nullopt;
+  return k;
+}
+
+double inverted_poisson(double mean, std::uint32_t high_word, std::uint32_t low_word) {
+  const double u =
+      static_cast<double>(((std::uint64_t{high_word} << 32) | low_word) >> 11) * 0x1p-53;
+  double probability = std::exp(-mean), rest = u - probability, k = 0.0;
+  while (rest >= 0.0 && k < 200.0) {
+    probability *= mean / ++k;
+    rest -= probability;
+  }
+  return k;
 }
 
 }  // namespace tofsmith

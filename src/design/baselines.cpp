@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "code/shared/family_rules.hpp"
+#include "code/shared/family_members.hpp"
 #include "design/atlas/nearest_codes.hpp"
-#include "design/chips/standard_chip_codes.hpp"
+#include "design/chips/chip_candidates.hpp"
 #include "design/factorize/factorized_code.hpp"
 #include "design/judge.hpp"
 #include "design/rows/tone_rows.hpp"

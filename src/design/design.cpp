@@ -9,7 +9,7 @@
 
 #include "core/shared/enum_words.hpp"
 #include "design/baselines.hpp"
-#include "design/chips/searched_code.hpp"
+#include "design/chips/chip_candidates.hpp"
 #include "design/exposure_split.hpp"
 #include "design/factorize/factorized_code.hpp"
 #include "design/frequencies/frequency_design.hpp"

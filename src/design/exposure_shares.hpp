@@ -33,4 +33,49 @@ using ShareObjective =
 ///   and monotonicity of an algorithm", 1983
 Eigen::VectorXd minimize_over_shares(Eigen::VectorXd shares, const ShareObjective& objective);
 
+/// Cramer-Rao bound of a code as a function of the shares of its exposures in the integration time.
+/// With u_i the derivatives of the measurement rate r_i w.r.t. depth, signal and ambient light,
+///   F = sum_i w_i u_i u_i^T,  w_i = T_i^2 / (T_i v_i + c_i),
+///   sigma = ([F^-1]_zz^-1 + 12 / R^2)^(-1/2).
+/// The term of the range R, the prior information of uniform depths, limits sigma at low light.
+class ExposureBound {
+ public:
+  /// @param camera  total integration time; has no list of times
+  /// @throws InvalidArgument if the camera does not support the code
+  ExposureBound(const CodeSet& code, const Camera& camera);
+
+  /// Returns the mean over operating points of log sigma, with the mean or root mean square over
+  /// depths as selected by the camera, and writes the gradient w.r.t. the shares (E).
+  double log_deviation(const Eigen::VectorXd& shares, Eigen::VectorXd& by_shares) const;
+  double log_deviation(const Eigen::VectorXd& shares) const;
+
+  /// Returns the shares with the smallest bound (E).
+  Eigen::VectorXd best_shares() const;
+  /// Returns the bound of equal exposures divided by the bound of these shares.
+  double gain(const Eigen::VectorXd& shares) const;
+
+ private:
+  struct Level {
+    double log_deviation = 0.0;
+    Eigen::VectorXd by_shares;
+  };
+  Level level(const OperatingPoint& point, const Eigen::VectorXd& shares) const;
+
+  Eigen::Index exposures_;
+  double total_s_;
+  double range_m_;
+  bool root_mean_square_;
+  std::vector<OperatingPoint> points_;
+  std::vector<double> albedos_, albedo_weights_;
+  std::vector<Eigen::Index> exposure_of_;  // of each measurement
+  // Rates per unit of signal (depths, K) and of ambient light (K).
+  Eigen::MatrixXd signal_, slope_, shot_signal_;
+  Eigen::VectorXd ambient_, shot_ambient_;
+  Eigen::VectorXd dark_variance_e2_per_s_, constant_variance_e2_;  // (K)
+  Eigen::VectorXd masses_;                                         // probabilities of the depths
+};
+
+/// Returns the shares of a code as a vector, equal ones if it has none (E).
+Eigen::VectorXd shares_of(const CodeSet& code);
+
 }  // namespace tofsmith

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "decode/shared/marked_raw.hpp"
-#include "gpu/decode_parameters.h"
 #include "gpu/device_queue.hpp"
+#include "gpu/kernel_parameters.h"
 #include "tofsmith/core/image.hpp"
 
 namespace tofsmith {

@@ -12,8 +12,7 @@
 
 #include "decode/filter/shared/filter_parts.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
-#include "gpu/decode_parameters.h"
-#include "gpu/filter_parameters.h"
+#include "gpu/kernel_parameters.h"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

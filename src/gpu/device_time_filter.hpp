@@ -8,7 +8,7 @@
 
 #include "decode/filter/shared/filter_parts.hpp"
 #include "gpu/device_raw.hpp"
-#include "gpu/time_parameters.h"
+#include "gpu/kernel_parameters.h"
 
 namespace tofsmith {
 

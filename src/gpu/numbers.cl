@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Compiled after decode_parameters.h, with MEASUREMENTS (K) and RANK defined. Products and sums are
+// Compiled after kernel_parameters.h, with MEASUREMENTS (K) and RANK defined. Products and sums are
 // rounded separately, as on the CPU. With FUSES_PRODUCTS, if the CPU has FMA, product_plus() rounds
 // once.
 #pragma OPENCL FP_CONTRACT OFF

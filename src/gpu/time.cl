@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Steps of a TimeFilter without look_ahead, as time_kernel.cpp and time_filter_state.cpp. Compiled
-// after numbers.cl and time_parameters.h. Products are not fused, as on the CPU.
+// after numbers.cl. Products are not fused, as on the CPU.
 
 // As std::max and std::min, also for NaN.
 #define LARGER(a, b) ((a) < (b) ? (b) : (a))

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Windows of a Filter over pixels with parallel vectors, as filter_plan.cpp and filter_kernel.cpp.
-// Compiled after numbers.cl and filter_parameters.h, before slopes.cl. Planes have a margin of
+// Compiled after numbers.cl, before slopes.cl. Planes have a margin of
 // unusable pixels, so that kernels need no bounds checks.
 
 // As the CPU's vector instructions: the second operand for equal values or NaN.

@@ -10,7 +10,7 @@
 #include <complex>
 #include <numbers>
 
-#include "camera/common_frequency.hpp"
+#include "camera/frequency_lists.hpp"
 #include "core/shared/random.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/forward_model.hpp"

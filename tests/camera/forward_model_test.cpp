@@ -10,7 +10,7 @@
 #include <numbers>
 #include <optional>
 
-#include "code/shared/hamiltonian.hpp"
+#include "code/shared/family_members.hpp"
 #include "core/shared/periodic.hpp"
 #include "refusal.hpp"
 #include "rows_setup.hpp"

@@ -9,9 +9,8 @@
 #include <bit>
 #include <set>
 
-#include "code/shared/hamiltonian.hpp"
+#include "code/shared/family_members.hpp"
 #include "code/shared/on_intervals.hpp"
-#include "code/square.hpp"
 #include "refusal.hpp"
 
 namespace tofsmith {

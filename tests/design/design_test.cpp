@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "design/chips/pair_choice.hpp"
+#include "design/factorize/factorized_code.hpp"
 #include "refusal.hpp"
 #include "same_code.hpp"
 #include "small_design.hpp"

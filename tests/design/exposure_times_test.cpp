@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/exposure_bound.hpp"
 #include "design/exposure_shares.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +10,6 @@
 #include <vector>
 
 #include "core/shared/random.hpp"
-#include "design/exposure_order.hpp"
 #include "design/exposure_split.hpp"
 #include "design/optimize/optimized_code.hpp"
 #include "same_code.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "design/chips/standard_chip_codes.hpp"
+#include "design/chips/chip_candidates.hpp"
 #include "tofsmith/design/chip_search.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 #include "tofsmith/simulate/depth_error.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "decode/multipath/multipath_curve.hpp"
+#include "decode/multipath/multipath_search.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,6 @@
 
 #include "core/shared/periodic.hpp"
 #include "design/circulant_tv/least_squares_term.hpp"
-#include "design/circulant_tv/piecewise_constant.hpp"
 #include "design/circulant_tv/proximal_operators.hpp"
 #include "tofsmith/core/error.hpp"
 

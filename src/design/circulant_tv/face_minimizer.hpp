@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "design/circulant_tv/least_squares_term.hpp"
-#include "design/circulant_tv/piecewise_constant.hpp"
 
 namespace tofsmith {
 

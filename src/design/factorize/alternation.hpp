@@ -6,11 +6,61 @@
 #include <string>
 #include <vector>
 
-#include "design/factorize/pair_model.hpp"
+#include "core/shared/periodic.hpp"
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/design/circulant_tv.hpp"
 #include "tofsmith/design/factorize.hpp"
 
 namespace tofsmith {
+
+/// Model of both arms for waveforms that are constant within cells, and the residual to a target at
+/// the N bins, where the model is exact:
+///   chi[k] = D[k] conj(M[k]) G[k] / N,  G[k] = sum_j H(k + j N) sinc^2((k + j N) / N).
+class PairModel {
+ public:
+  PairModel(const CorrelationTarget& target, const Camera& camera);
+
+  const Camera& camera() const { return camera_; }
+  int samples() const { return transform_.samples(); }
+  double peak_factor() const { return peak_factor_; }
+  bool binary_modulation() const { return binary_modulation_; }
+  bool binary_demodulation() const { return binary_demodulation_; }
+  double shortest_run() const { return shortest_run_; }
+  const CorrelationTarget& target() const { return target_; }
+  /// The target at the bins; reversed in time for the modulation step.
+  const Eigen::VectorXd& target_samples() const { return target_.samples; }
+  const Eigen::VectorXd& reversed_target_samples() const { return reversed_target_; }
+  /// Returns the gain of both arms at harmonics [0, highest].
+  Eigen::VectorXcd transfer(int highest) const { return camera_.transfer(highest); }
+
+  Eigen::VectorXcd spectrum(const Eigen::VectorXd& samples) const;
+
+  /// First column of the circulant matrix that maps demodulation to correlation samples.
+  Eigen::VectorXd demodulation_kernel(const Eigen::VectorXd& modulation) const;
+  /// First column for modulation and time-reversed correlation samples.
+  Eigen::VectorXd modulation_kernel(const Eigen::VectorXd& demodulation) const;
+
+  double residual_rms(const Eigen::VectorXcd& modulation,
+                      const Eigen::VectorXcd& demodulation) const;
+  double residual_rms(const Eigen::VectorXd& modulation, const Eigen::VectorXd& demodulation) const;
+  /// RMS residual over depth with exact switching times and 8 points per bin; the target is linear
+  /// between bins. Uses the actual waveforms of generators; infinite if the actual modulation is
+  /// zero.
+  double residual_rms(const WaveformPair& pair) const;
+
+ private:
+  WaveformPair actual(const WaveformPair& pair) const;
+
+  CorrelationTarget target_;
+  Camera camera_;
+  double peak_factor_;
+  double shortest_run_;
+  bool binary_modulation_, binary_demodulation_;
+  PeriodicTransform transform_;
+  Eigen::VectorXd reversed_target_;
+  Eigen::VectorXcd target_spectrum_;
+  Eigen::VectorXcd grid_transfer_;  // G / N
+};
 
 struct SampledPair {
   Eigen::VectorXd modulation;    // (N), in [0, p], mean <= 1

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "design/factorize/pair_model.hpp"
+#include "design/factorize/alternation.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/gradients/harmonic_sums.hpp"
+#include "design/gradients/between_bins.hpp"
 
 #include <algorithm>
 #include <numbers>

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tofsmith/design/chip_search.hpp"
+#include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
 
@@ -26,5 +28,16 @@ struct StandardCode {
 ///   coprime-three-phase     two exposures of three taps, periods of 1/3 and 1/4
 /// @throws std::invalid_argument if samples is not a multiple of 36
 std::vector<StandardCode> standard_chip_codes(const Camera& camera, int samples);
+
+std::optional<BrokenRule> why_nothing_to_search(const Camera& camera, const DesignOptions& options);
+
+std::vector<int> searchable_exposures(const Camera& camera, const DesignOptions& options);
+
+std::string searched_name(int exposures);
+
+/// Searches the codes with the best metric; empty if every code is ambiguous.
+/// @throws std::invalid_argument as search_chip_codes(); Interrupted
+std::vector<Candidate> searched_candidates(const Camera& camera, int exposures,
+                                           const DesignOptions& options, const Progress& progress);
 
 }  // namespace tofsmith
