@@ -6,7 +6,6 @@
 /// All of tofsmith::gpu: averaging, filtering and decoding on OpenCL devices. Includes
 /// tofsmith/core.hpp.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>

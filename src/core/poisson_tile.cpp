@@ -1,8 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Random123/philox.h>
-
-#include <algorithm>
 #include <array>
 
 #include "core/shared/random.hpp"
@@ -129,17 +126,6 @@ std::uint32_t block_of(int draw, std::uint32_t number) {
   return first_poisson_block + static_cast<std::uint32_t>(draw) * blocks_per_draw + number;
 }
 
-std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t block, int i) {
-  const r123::Philox4x32::ctr_type counter = {
-      {block, streams.first_trial + static_cast<std::uint32_t>(i),
-       static_cast<std::uint32_t>(streams.work_item),
-       static_cast<std::uint32_t>(streams.work_item >> 32)}};
-  const r123::Philox4x32::key_type key = {
-      {static_cast<std::uint32_t>(streams.seed), static_cast<std::uint32_t>(streams.seed >> 32)}};
-  const auto words = r123::Philox4x32()(counter, key);
-  return {words[0], words[1], words[2], words[3]};
-}
-
 /// Trials without an accepted count.
 struct OpenTrials {
   int size = 0;
@@ -202,9 +188,12 @@ void draw_poisson(const TrialStreams& streams, int draw, int trials, const doubl
         open.u_word[i] = word(first);
         open.v_word[i] = word(first + 1);
       } else {
-        const auto more = words_of(streams, block_of(draw, attempt / 2), trial);
-        open.u_word[i] = more[first];
-        open.v_word[i] = more[first + 1];
+        RandomStream more(streams.seed, streams.work_item,
+                          streams.first_trial + static_cast<std::uint32_t>(trial),
+                          block_of(draw, attempt / 2));
+        for (std::uint32_t word_before = 0; word_before < first; ++word_before) more();
+        open.u_word[i] = more();
+        open.v_word[i] = more();
       }
     }
     open.attempt(count);

@@ -10,9 +10,10 @@
 
 namespace tofsmith {
 
-RandomStream::RandomStream(std::uint64_t seed, std::uint64_t work_item, std::uint32_t trial)
+RandomStream::RandomStream(std::uint64_t seed, std::uint64_t work_item, std::uint32_t trial,
+                           std::uint32_t block)
     : seed_(seed),
-      counter_{0u, trial, static_cast<std::uint32_t>(work_item),
+      counter_{block, trial, static_cast<std::uint32_t>(work_item),
                static_cast<std::uint32_t>(work_item >> 32)} {}
 
 RandomStream::result_type RandomStream::operator()() {

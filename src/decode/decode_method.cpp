@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/shared/enum_words.hpp"
-#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 

@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "core/shared/enum_words.hpp"
 #include "decode/output/output_kernel.hpp"
 #include "decode/output/pixel_model.hpp"
 #include "decode/output/pixel_output.hpp"
@@ -19,7 +16,6 @@
 #include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/decode/decode_method.hpp"
 
 namespace tofsmith {
 
@@ -198,11 +194,7 @@ void Decoder::Plan::decode_within(const float* raw, double variance_share, const
                                   const RangePart& part, std::size_t at,
                                   const DecodedView& planes) const {
   std::array<double, max_measurements> electrons, plane, variance_e2;
-  for (int k = 0; k < model.measurements(); ++k) {
-    if (!std::isfinite(raw[k])) return store_invalid(at, planes);
-    electrons[static_cast<std::size_t>(k)] =
-        matcher.bins().exact().electrons(static_cast<double>(raw[k]), k);
-  }
+  if (!matcher.bins().exact().scale().read(raw, electrons.data())) return store_invalid(at, planes);
   model.project(electrons.data(), plane.data());
   PixelDecoding pixel;
   if (const std::optional<Position> best = model.best_within(plane.data(), part)) {

@@ -197,15 +197,14 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   const double gain_e_per_raw = sensor.gain_e_per_dn.value_or(1.0);
   table.gain_e_per_raw = Eigen::VectorXd::Constant(table.measurements(), gain_e_per_raw);
   table.black_level = Eigen::VectorXd::Zero(table.measurements());
+  if (sensor.is_signed() || !sensor.subtracts())
+    table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
   if (sensor.subtracts()) {
     const Eigen::MatrixXd sums = model.readout().cwiseAbs();
     table.shot_correlation = model.tap_correlation_table(rows) * sums.transpose();
     table.shot_ambient_gain = sums * model.tap_ambient_gain();
     table.shot_dark_electrons = sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
-    if (sensor.is_signed()) table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
-    return resolved(table);
   }
-  table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
   return resolved(table);
 }
 
@@ -285,10 +284,6 @@ int resolving_factor(const DecodingTable& table) {
   if (curve.cols() < 2) return 1;
   const std::optional<SmoothCurve> smooth = SmoothCurve::of(curve);
   if (!smooth) return 1;
-  const int most = std::max(1, max_rows / table.samples());
-  const auto limited = [&](double factor) {
-    return static_cast<int>(std::clamp(std::ceil(factor - 1e-9), 1.0, static_cast<double>(most)));
-  };
   // The error is proportional to the cube of the spacing.
   const auto factor_of = [&](const SmoothCurve& at, double rows_per_row) {
     const double error_m = interpolation_error(at) * table.row_m() / rows_per_row;
@@ -300,7 +295,9 @@ int resolving_factor(const DecodingTable& table) {
   // With few rows the estimate is unreliable.
   constexpr int finer = 4;
   const std::optional<SmoothCurve> fine = SmoothCurve::of(interpolated(curve, finer));
-  return limited(fine ? factor_of(*fine, finer) : factor);
+  const double needed = fine ? factor_of(*fine, finer) : factor;
+  const int most = std::max(1, max_rows / table.samples());
+  return static_cast<int>(std::clamp(std::ceil(needed - 1e-9), 1.0, static_cast<double>(most)));
 }
 
 Eigen::MatrixXd on_chords(const Eigen::MatrixXd& columns, int factor) {

@@ -18,31 +18,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Errors of decoded depths that corrections and maps will subtract.
-class DepthErrors {
- public:
-  DepthErrors(const DecodingTable& table, const PixelMaps& maps, int width)
-      : table_(table), maps_(maps), width_(static_cast<std::size_t>(width)) {}
-
-  /// Returns the error [m]; NaN for a dead pixel.
-  double at(std::size_t pixel, double decoded_m, const float* signal_e_per_s) const {
-    double error_m = maps_.delay_offset_m.empty()
-                         ? 0.0
-                         : static_cast<double>(maps_.delay_offset_m.pixels[pixel]);
-    if (const auto& correction = table_.correction)
-      error_m += correction->error_m(
-          decoded_m, table_.range_m, static_cast<int>(pixel / width_),
-          static_cast<int>(pixel % width_),
-          signal_e_per_s ? static_cast<double>(*signal_e_per_s) : correction->signal_e_per_s);
-    return error_m;
-  }
-
- private:
-  const DecodingTable& table_;
-  const PixelMaps& maps_;
-  std::size_t width_;
-};
-
 /// Removes a depth outside the limits, except where a status already makes it doubtful.
 void remove_if_outside(const DepthLimits& limits, double depth_m, std::size_t at,
                        const DecodedView& decoded) {
@@ -61,22 +36,22 @@ void remove_if_outside(const DepthLimits& limits, double depth_m, std::size_t at
 class BlockRestriction {
  public:
   BlockRestriction(const DepthLimits& limits, const DepthDecoder& decoder, const RawView& raw,
-                   const DepthErrors& errors, std::size_t first, const DecodedView& decoded)
+                   const PixelMaps& maps, int width, std::size_t first, const DecodedView& decoded)
       : limits_(limits),
         decoder_(decoder),
         raw_(raw),
-        errors_(errors),
+        maps_(maps),
+        width_(static_cast<std::size_t>(width)),
         first_(first),
         decoded_(decoded) {}
 
   void run(IndexRange pixels) {
     for (std::int64_t i = pixels.begin; i < pixels.end; ++i) choose(static_cast<std::size_t>(i));
     if (chosen_.empty()) return;
-    RawView view = RawView::interleaved(values_.data(), 1, static_cast<int>(chosen_.size()),
-                                        raw_.measurements);
-    view.averaged = averaged_.empty() ? nullptr : averaged_.data();
-    view.noise = raw_.noise;
-    view.is_marked = true;
+    const RawView view =
+        marked_view(RawView::interleaved(values_.data(), 1, static_cast<int>(chosen_.size()),
+                                         raw_.measurements),
+                    averaged_.empty() ? nullptr : averaged_.data(), raw_.noise);
     DepthImage within(decoded_.planes(), 1, static_cast<int>(chosen_.size()));
     decoder_.decode_within(view, parts_.data(), DecodedView::of(within));
     for (std::size_t j = 0; j < chosen_.size(); ++j) merge(chosen_[j], within, j);
@@ -88,6 +63,21 @@ class BlockRestriction {
     double depth_m = 0.0;  ///< corrected
   };
 
+  /// Returns the error of a decoded depth that corrections and maps will subtract; NaN for a dead
+  /// pixel.
+  double error_m(std::size_t pixel, double decoded_m, const float* signal_e_per_s) const {
+    double sum_m = maps_.delay_offset_m.empty()
+                       ? 0.0
+                       : static_cast<double>(maps_.delay_offset_m.pixels[pixel]);
+    const DecodingTable& table = decoder_.table();
+    if (const auto& correction = table.correction)
+      sum_m += correction->error_m(
+          decoded_m, table.range_m, static_cast<int>(pixel / width_),
+          static_cast<int>(pixel % width_),
+          signal_e_per_s ? static_cast<double>(*signal_e_per_s) : correction->signal_e_per_s);
+    return sum_m;
+  }
+
   /// Removes a depth with confidence 1 that is outside the limits. Selects other pixels for
   /// decoding again.
   void choose(std::size_t at) {
@@ -95,9 +85,9 @@ class BlockRestriction {
     const double range_m = decoder_.table().range_m;
     const double decoded_m = static_cast<double>(decoded_.depth_m[at]);
     const float* const signal = decoded_.signal_e_per_s ? decoded_.signal_e_per_s + at : nullptr;
-    const double error_m = errors_.at(first_ + at, decoded_m, signal);
-    if (std::isnan(error_m)) return;
-    const double depth_m = wrap(decoded_m - error_m, range_m);
+    const double subtracted_m = error_m(first_ + at, decoded_m, signal);
+    if (std::isnan(subtracted_m)) return;
+    const double depth_m = wrap(decoded_m - subtracted_m, range_m);
     if (decoded_.confidence[at] >= 1.0f)  // no other depth is possible
       return remove_if_outside(limits_, depth_m, at, decoded_);
     chosen_.push_back({at, depth_m});
@@ -112,8 +102,8 @@ class BlockRestriction {
   RangePart part_of(std::size_t pixel, const float* signal_e_per_s) const {
     const double range_m = decoder_.table().range_m;
     const auto decoded_m = [&](double depth_m) {
-      const double once_m = depth_m + errors_.at(pixel, depth_m, signal_e_per_s);
-      return depth_m + errors_.at(pixel, once_m, signal_e_per_s);
+      const double once_m = depth_m + error_m(pixel, depth_m, signal_e_per_s);
+      return depth_m + error_m(pixel, once_m, signal_e_per_s);
     };
     const double begin_m = decoded_m(limits_.min_m), end_m = decoded_m(limits_.max_m);
     return {wrap(begin_m, range_m) / range_m, (end_m - begin_m) / range_m};
@@ -135,7 +125,8 @@ class BlockRestriction {
   const DepthLimits& limits_;
   const DepthDecoder& decoder_;
   const RawView& raw_;
-  const DepthErrors& errors_;
+  const PixelMaps& maps_;
+  std::size_t width_;
   std::size_t first_;
   const DecodedView& decoded_;
   std::vector<Pixel> chosen_;
@@ -174,11 +165,10 @@ void restrict_depths(const DepthLimits& limits, const DepthDecoder& decoder, con
           "must have depth, confidence and status");
   constexpr std::int64_t block_pixels = usual_block_pixels / 16;
   const MarkedRaw marked(raw, decoder.table().marking);
-  const DepthErrors errors(decoder.table(), maps, width);
   for_each_block(
       marked.view(), decoder.table().measurements(), progress,
       [&](IndexRange pixels) {
-        BlockRestriction(limits, decoder, marked.view(), errors, first, decoded).run(pixels);
+        BlockRestriction(limits, decoder, marked.view(), maps, width, first, decoded).run(pixels);
       },
       block_pixels);
 }

@@ -41,10 +41,8 @@ RawView MeanOfRows::finish(double averaged) {
   averaged_.assign(static_cast<std::size_t>(height_) * static_cast<std::size_t>(width_),
                    static_cast<float>(averaged * frames_));
   frames_ = 0;
-  RawView view = RawView::interleaved(sums_.data(), height_, width_, measurements_);
-  view.averaged = averaged_.data();
-  view.is_marked = true;
-  return view;
+  return marked_view(RawView::interleaved(sums_.data(), height_, width_, measurements_),
+                     averaged_.data());
 }
 
 FrameAccumulator::FrameAccumulator(const DecodingTable& table, const FrameSteps& steps)
@@ -88,7 +86,6 @@ class CpuPipeline final : public FramePipeline {
  public:
   CpuPipeline(const DepthDecoder& decoder, const FrameSteps& frame_steps, int height, int width)
       : FramePipeline(decoder, frame_steps, height, width),
-        decoder_(decoder),
         accumulator_(decoder.table(), frame_steps) {}
 
   FrameMemory memory(int recorded) const override {
@@ -112,11 +109,11 @@ class CpuPipeline final : public FramePipeline {
 
   void decode(const DecodedView& decoded, const Progress& progress,
               const Image<std::uint8_t>& left_out) override {
-    if (!steps().filter) return decoder_.decode(measured(), decoded, progress);
+    if (!steps().filter) return decoder().decode(measured(), decoded, progress);
     constexpr double effort = 8.0;  // relative to decoding, roughly
     const ProgressParts parts(progress, {effort, 1.0});
     filter_frame(parts[0], left_out);
-    decoder_.decode(filtered_.view(), decoded, parts[1]);
+    decoder().decode(filtered_.view(), decoded, parts[1]);
   }
   RawView measured() override { return ready_.value(); }
   RawView numbers(const Progress& progress) override {
@@ -132,7 +129,6 @@ class CpuPipeline final : public FramePipeline {
     is_filtered_ = true;
   }
 
-  const DepthDecoder& decoder_;
   FrameAccumulator accumulator_;
   std::optional<RawView> ready_;
   FilteredFrame filtered_;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 
 #include "camera/shared/raw_numbers.hpp"
 #include "core/shared/pixel_runs.hpp"
@@ -35,10 +34,8 @@ RawView mark_as(const RawView& raw, const RawMarking& marking, std::vector<std::
                            static_cast<double>(pixel[k * raw.measurement_stride]), was_unsigned));
                  });
   });
-  RawView view = RawView::interleaved(numbers, raw.height, raw.width, raw.measurements);
-  view.averaged = raw.averaged;
-  view.noise = raw.noise;
-  return view;
+  return marked_view(RawView::interleaved(numbers, raw.height, raw.width, raw.measurements),
+                     raw.averaged, raw.noise);
 }
 
 }  // namespace

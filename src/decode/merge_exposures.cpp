@@ -177,11 +177,9 @@ void merge_exposures(std::span<const RawView> stored, std::span<const double> ex
 }
 
 RawView MergedExposures::view() const {
-  RawView raw =
-      RawView::interleaved(values.values.data(), values.height, values.width, values.measurements);
-  raw.averaged = averaged.pixels.data();
-  raw.is_marked = true;
-  return raw;
+  return marked_view(
+      RawView::interleaved(values.values.data(), values.height, values.width, values.measurements),
+      averaged.pixels.data());
 }
 
 }  // namespace tofsmith

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "tofsmith/decode/decoding_table.hpp"
@@ -22,6 +23,15 @@ class RawScale {
   double electrons(double raw, int measurement) const {
     const Line& line = lines_[static_cast<std::size_t>(measurement)];
     return (raw - line.dark_raw) * line.gain_e_per_raw;
+  }
+  /// Converts the raw values of a pixel. Returns false if one is NaN or infinite.
+  bool read(const float* raw, double* pixel_electrons) const {
+    bool is_finite = true;
+    for (int k = 0; k < static_cast<int>(lines_.size()); ++k) {
+      pixel_electrons[k] = electrons(static_cast<double>(raw[k]), k);
+      is_finite = is_finite && std::isfinite(raw[k]);
+    }
+    return is_finite;
   }
   double dark_raw(int measurement) const {
     return lines_[static_cast<std::size_t>(measurement)].dark_raw;

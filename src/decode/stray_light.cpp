@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/shared/periodic.hpp"
-#include "core/shared/pixel_runs.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -18,12 +18,6 @@ namespace {
 
 constexpr int max_rounds = 60;
 constexpr double converged = 1e-6;  // relative to the largest light
-
-double sum_of(const Image<float>& kernel) {
-  double sum = 0.0;
-  for (const float value : kernel.pixels) sum += static_cast<double>(value);
-  return sum;
-}
 
 }  // namespace
 
@@ -39,7 +33,7 @@ StrayLight::StrayLight(Image<float> kernel) : kernel_(std::move(kernel)) {
   for (const float value : kernel_.pixels)
     require(std::isfinite(value) && value >= 0.0F, "kernel", value,
             "each must be finite and >= 0: a share of a pixel's light");
-  share_ = sum_of(kernel_);
+  share_ = std::accumulate(kernel_.pixels.begin(), kernel_.pixels.end(), 0.0);
   require(share_ < 0.5, "sum of the kernel", share_,
           "must be < 0.5: the share of light that is scattered");
 }
@@ -99,12 +93,7 @@ void StrayLight::remove(const RawView& stored, const DecodingTable& table, RawFr
   clean.width = raw.width;
   clean.measurements = raw.measurements;
   clean.values.resize(static_cast<std::size_t>(raw.pixels()) * measurements);
-  std::size_t at = 0;
-  for_each_run(raw, 0, raw.pixels(), [&](const auto* pixel, std::int64_t length, std::int64_t) {
-    for (std::int64_t x = 0; x < length; ++x, pixel += raw.column_stride)
-      for (int k = 0; k < raw.measurements; ++k)
-        clean.values[at++] = static_cast<float>(pixel[k * raw.measurement_stride]);
-  });
+  copy_pixels(raw, 0, raw.pixels(), clean.values.data());
   const SaturationLevels levels(table);
   const float highest = std::nextafter(levels.highest, -INFINITY),
               lowest = std::nextafter(levels.lowest, INFINITY);

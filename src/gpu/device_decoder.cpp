@@ -44,10 +44,7 @@ RawView OpenNumbers::view() const {
   RawView view = RawView::interleaved(numbers_.data(), 1, pixels, measurements_);
   view.column_stride = measurements_ + 1;
   view.row_stride = pixels * view.column_stride;
-  view.averaged = averaged_.data();
-  view.noise = noise_;
-  view.is_marked = true;
-  return view;
+  return marked_view(view, averaged_.data(), noise_);
 }
 
 DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles)
@@ -123,7 +120,8 @@ void DeviceTile::fetch(const DecodedView& to) const {
   const bool has_best_bins = to.wants_bins_only() || tables_.is_coarse;
   fetch_plane(has_best_bins ? best_bins_ : bins_, to.bin);
   if (to.bin)
-    for (std::int64_t i = 0; i < raw_.tile().pixels; ++i) to.bin[i] = nearest_bin(to.bin[i]);
+    for (std::int64_t i = 0; i < raw_.tile().pixels; ++i)
+      to.bin[i] = nearest_bin_of_row(to.bin[i], outputs_.constants().samples, bin_count_);
   for (const DecodedPlane written : written_planes)
     with_plane(
         written, [&](auto* values) { fetch_plane(*plane(written), values); }, to);
@@ -188,12 +186,9 @@ void with_open_numbers(const RawView& raw, std::int64_t first,
           data[row * raw.row_stride + column * raw.column_stride + k * raw.measurement_stride]);
     if (raw.averaged) averaged.push_back(raw.averaged[at]);
   }
-  RawView view =
-      RawView::interleaved(values.data(), 1, static_cast<int>(open.size()), raw.measurements);
-  if (raw.averaged) view.averaged = averaged.data();
-  view.noise = raw.noise;
-  view.is_marked = true;
-  use(view);
+  use(marked_view(
+      RawView::interleaved(values.data(), 1, static_cast<int>(open.size()), raw.measurements),
+      raw.averaged ? averaged.data() : nullptr, raw.noise));
 }
 
 }  // namespace
@@ -258,11 +253,9 @@ void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSourc
     std::vector<std::int32_t> in_frame = open;
     for (std::int32_t& pixel : in_frame) pixel += static_cast<std::int32_t>(part.first);
     exact = frame.means->open_numbers(in_frame);
-    const float* const averaged = view.averaged;
-    view = RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements);
-    view.averaged = averaged;
-    view.noise = in.raw().noise();
-    view.is_marked = true;
+    view = marked_view(
+        RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements),
+        view.averaged, view.noise);
   }
   decode_open_pixels(view, open, planes);
 }

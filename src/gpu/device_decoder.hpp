@@ -69,10 +69,6 @@ class DeviceTile {
   void start_list_of_open();
   void find_bins(const MatchParameters& parameters, const DeviceMemory& bins) const;
 
-  std::int32_t nearest_bin(std::int32_t row) const {
-    return nearest_bin_of_row(row, outputs_.constants().samples, bin_count_);
-  }
-
   const OutputKernel& outputs_;
   int bin_count_;
   DecodeTables tables_;
@@ -83,8 +79,6 @@ class DeviceTile {
   DeviceMemory bins_, best_bins_, opened_, open_, some_numbers_;
   std::array<DeviceMemory, plane_descriptions.size()> planes_;  // written_planes
 };
-
-struct FrameSource;
 
 /// A Decoder on a device. Pixels that single precision does not prove are decoded on the CPU, so
 /// bins and statuses equal the CPU's; for float planes see frame_backend(). Thread-safe; calls are

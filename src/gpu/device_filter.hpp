@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <vector>
 
 #include "gpu/device_decoder.hpp"
 #include "gpu/device_tables.hpp"

@@ -165,9 +165,7 @@ RawView DeviceFrames::Plan::numbers_here() {
     source.queue->download(*source.on_device->numbers(), count * sizeof(float), numbers.data());
     view = RawView::planar(numbers.data(), height, width, k);
   }
-  view.averaged = averaged.data();
-  view.is_marked = true;
-  return view;
+  return marked_view(view, averaged.data());
 }
 
 std::int64_t DeviceFrames::decode(const DeviceDecoder& decoder, const DecodedView& decoded,

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/device_raw.hpp"
 
-#include <cmath>
-#include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>

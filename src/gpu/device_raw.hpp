@@ -33,9 +33,7 @@ class DeviceRaw {
   void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
                       RawNumber number = raw_float, const NoiseRatios& noise = {});
   void release();
-  static std::int64_t bytes_per_pixel(const RawView& raw) { return 4 * (raw.measurements + 1); }
 
-  std::int64_t pixels() const { return tile_.pixels; }
   const TileParameters& tile() const { return tile_; }
   const DeviceMemory* numbers() const { return &numbers_; }
   /// Null if the numbers are not means.

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string_view>
-#include <vector>
 
 #include "decode/filter/shared/filter_parts.hpp"
 #include "gpu/device_raw.hpp"

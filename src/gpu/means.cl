@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Means of frames in doubles, as RowSums. Compiled after numbers.cl.
+// Means of frames in doubles, as MeanOfRows. Compiled after numbers.cl.
 
 double exact_number(const struct TileParameters* tile, global const uchar* raw, int pixel, int k) {
   if (tile->number != raw_double) return raw_number(tile, raw, pixel, k);

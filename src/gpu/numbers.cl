@@ -10,9 +10,7 @@
 
 typedef global const float* Floats;
 typedef global const int* Ints;
-#ifdef HAS_DOUBLES
-typedef global const double* Doubles;
-#endif
+typedef global float* Plane;
 
 Ints ints_at(Floats tables, int at) { return (Ints)(tables + at); }
 

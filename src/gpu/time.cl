@@ -8,8 +8,6 @@
 #define SMALLER(a, b) ((b) < (a) ? (b) : (a))
 #define PATCH_PIXELS ((2 * PATCH_REACH + 1) * (2 * PATCH_REACH + 1))
 
-typedef global float* Plane;
-
 Plane time_plane(const struct TimeParameters* p, global float* planes, int index) {
   return planes + (size_t)index * (size_t)p->height * (size_t)p->width;
 }

@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Windows of a Filter over pixels with parallel vectors, as filter_plan.cpp and filter_kernel.cpp.
-// Compiled after numbers.cl, before slopes.cl. Planes have a margin of
-// unusable pixels, so that kernels need no bounds checks.
+// Compiled after numbers.cl, before slopes.cl. Planes have a margin of unusable pixels, so that
+// kernels need no bounds checks.
 
 // As the CPU's vector instructions: the second operand for equal values or NaN.
 #define LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define SMALLER(a, b) ((a) < (b) ? (a) : (b))
-
-typedef global float* Plane;
 
 Plane plane_of(const struct FilterParameters* p, global float* planes, int index) {
   return planes + (size_t)index * (size_t)p->plane_floats + (size_t)p->origin;

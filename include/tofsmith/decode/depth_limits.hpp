@@ -2,20 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <optional>
-#include <string_view>
 
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/depth_image.hpp"
-#include "tofsmith/decode/likelihood_decoder.hpp"
-#include "tofsmith/decode/multipath_decoder.hpp"
-#include "tofsmith/decode/unwrap_decoder.hpp"
 
 namespace tofsmith {
 

@@ -28,11 +28,6 @@ class DepthPrior {
   double below(double share) const;
   /// Quantile for `part` in [0, 1).
   double quantile(double part) const;
-  // The vectors are empty if the prior is uniform.
-  double begin() const { return begin_; }
-  double end() const { return end_; }
-  const std::vector<double>& part_masses() const { return mass_; }
-  const std::vector<double>& below_parts() const { return below_; }
 
   /// Probability of `parts` equal parts of the range; empty if uniform.
   Eigen::VectorXd masses(Eigen::Index parts) const;
@@ -42,6 +37,7 @@ class DepthPrior {
   double begin_of(std::size_t cell) const;
 
   double begin_ = 0.0, end_ = 1.0;
+  // Empty if uniform.
   std::vector<double> mass_;   // of each part
   std::vector<double> below_;  // and 1
 };

@@ -17,7 +17,9 @@ class RandomStream {
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return 0xffffffffu; }
 
-  RandomStream(std::uint64_t seed, std::uint64_t work_item, std::uint32_t trial = 0);
+  /// @param block  number of skipped words, divided by 4
+  RandomStream(std::uint64_t seed, std::uint64_t work_item, std::uint32_t trial = 0,
+               std::uint32_t block = 0);
 
   /// Next 32 random bits.
   result_type operator()();

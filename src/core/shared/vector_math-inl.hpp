@@ -11,8 +11,6 @@
 
 #include <hwy/highway.h>
 
-#include <cstdint>
-
 #include "core/shared/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

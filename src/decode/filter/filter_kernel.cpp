@@ -297,24 +297,22 @@ void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, f
   }
 }
 
-void find_energy(const std::array<const float*, max_measurements>& u, int rank,
-                 const float* variance, const float* floor, float floor_share,
-                 const FilterGrid& grid, int first_row, int rows, float* energy,
+void find_energy(const SimilarityTest& test, const float* variance, const float* floor,
+                 float floor_share, const FilterGrid& grid, int row, float* energy,
                  float* inverse_sigma) {
-  for (int y = first_row; y < first_row + rows; ++y)
-    for (int x = 0; x < grid.width; x += lanes_of()) {
-      const std::ptrdiff_t p = y * grid.stride + x;
-      Vector squares = hn::Zero(Floats());
-      for (int j = 0; j < rank; ++j) {
-        const Vector value = load(u.data()[j] + p);
-        squares = hn::MulAdd(value, value, squares);
-      }
-      const Vector least = hn::Mul(load(floor + p), all(floor_share));
-      const Vector v = hn::Max(hn::Max(load(variance + p), least), all(1e-12f));
-      const Vector inverse = hn::Div(all(1.0f), v);
-      store(hn::Mul(squares, inverse), energy + p);
-      store(hn::Sqrt(inverse), inverse_sigma + p);
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t p = row * grid.stride + x;
+    Vector squares = hn::Zero(Floats());
+    for (int j = 0; j < test.rank; ++j) {
+      const Vector value = load(test.u.data()[j] + p);
+      squares = hn::MulAdd(value, value, squares);
     }
+    const Vector least = hn::Mul(load(floor + p), all(floor_share));
+    const Vector v = hn::Max(hn::Max(load(variance + p), least), all(1e-12f));
+    const Vector inverse = hn::Div(all(1.0f), v);
+    store(hn::Mul(squares, inverse), energy + p);
+    store(hn::Sqrt(inverse), inverse_sigma + p);
+  }
 }
 
 }  // namespace
@@ -378,12 +376,11 @@ void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const Filter
   HWY_DYNAMIC_DISPATCH(find_offsets)(sums, grid, strip, weights, row, offset2);
 }
 
-void find_energy(const std::array<const float*, max_measurements>& u, int rank,
-                 const float* variance, const float* floor, float floor_share,
-                 const FilterGrid& grid, int first_row, int rows, float* energy,
+void find_energy(const SimilarityTest& test, const float* variance, const float* floor,
+                 float floor_share, const FilterGrid& grid, int row, float* energy,
                  float* inverse_sigma) {
   HWY_DYNAMIC_DISPATCH(find_energy)
-  (u, rank, variance, floor, floor_share, grid, first_row, rows, energy, inverse_sigma);
+  (test, variance, floor, floor_share, grid, row, energy, inverse_sigma);
 }
 
 void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own) {

@@ -162,9 +162,8 @@ void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const Filter
                   const PairWeights& weights, int row, float* offset2);
 
 /// Computes energy and inverse_sigma of a SimilarityTest; `floor` limits the variances.
-void find_energy(const std::array<const float*, max_measurements>& u, int rank,
-                 const float* variance, const float* floor, float floor_share,
-                 const FilterGrid& grid, int first_row, int rows, float* energy,
+void find_energy(const SimilarityTest& test, const float* variance, const float* floor,
+                 float floor_share, const FilterGrid& grid, int row, float* energy,
                  float* inverse_sigma);
 
 /// Pixels with more light are not tested [standard deviations].

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include "core/shared/decompositions.hpp"
 #include "core/shared/pixel_runs.hpp"
@@ -192,10 +190,8 @@ void Filter::Plan::find_hidden_noise(const RawView& raw, FilterPlanes& frame, in
 WeightedSums Filter::Plan::sums_of(FilterPlanes& frame, int from, int to, int window) const {
   WeightedSums sums;
   sums.planes = measurements;
-  for (int k = 0; k < measurements; ++k) {
-    sums.in[static_cast<std::size_t>(k)] = frame.light(from, k);
-    sums.out[static_cast<std::size_t>(k)] = frame.light(to, k);
-  }
+  frame.list_light(from, measurements, sums.in);
+  frame.list_light(to, measurements, sums.out);
   const WindowVariances variances(window);
   sums.variance = frame.scalar(variances.in);
   sums.variance_out = frame.scalar(variances.out);
@@ -212,10 +208,8 @@ NearAndFar Filter::Plan::near_and_far(FilterPlanes& frame, int near, int far, in
                   .far_variance = frame.scalar(variances.out),
                   .difference = frame.scalar(FilterPlanes::shift),
                   .kept = frame.scalar(FilterPlanes::signal)};
-  for (int k = 0; k < measurements; ++k) {
-    sums.near[static_cast<std::size_t>(k)] = frame.light(near, k);
-    sums.far[static_cast<std::size_t>(k)] = frame.light(far, k);
-  }
+  frame.list_light(near, measurements, sums.near);
+  frame.list_light(far, measurements, sums.far);
   return sums;
 }
 
@@ -226,13 +220,12 @@ void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window
                       .usable = frame.scalar(FilterPlanes::usable),
                       .patch_reach = window == 0 ? patch_reach : patch_reach - 1,
                       .max_difference_sigma = static_cast<float>(options.max_difference_sigma)};
-  for (int j = 0; j < rank; ++j) test.u[static_cast<std::size_t>(j)] = frame.light(from, j);
+  frame.list_light(from, rank, test.u);
   const auto floor_share = static_cast<float>(1.0 / options.trusted_pixels);
   for_each_row(frame, [&](int row) {
-    find_energy(test.u, rank, frame.scalar(WindowVariances(window).in),
+    find_energy(test, frame.scalar(WindowVariances(window).in),
                 frame.scalar(FilterPlanes::variance), window == 0 ? 0.0f : floor_share, frame.grid,
-                row, 1, frame.scalar(FilterPlanes::energy),
-                frame.scalar(FilterPlanes::inverse_sigma));
+                row, frame.scalar(FilterPlanes::energy), frame.scalar(FilterPlanes::inverse_sigma));
   });
   WeightedSums sums = sums_of(frame, from, to, window);
   sums.bias = bias_of(window);
@@ -284,10 +277,8 @@ OwnLightTest Filter::Plan::own_light_test(FilterPlanes& frame, int added, int me
                     .usable = frame.scalar(FilterPlanes::usable),
                     .variance = frame.scalar(FilterPlanes::variance),
                     .limit_sigma = static_cast<float>(options.own_light_sigma)};
-  for (int j = 0; j < rank; ++j) {
-    test.added[static_cast<std::size_t>(j)] = frame.light(added, j);
-    test.measured[static_cast<std::size_t>(j)] = frame.light(measured, j);
-  }
+  frame.list_light(added, rank, test.added);
+  frame.list_light(measured, rank, test.measured);
   return test;
 }
 

@@ -86,7 +86,8 @@ struct Filter::Plan {
   void write_deviation_factors(FilterPlanes& frame, int row, const float* is_filtered) const;
   CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
   void split(FilterPlanes& frame, int from, int to, int row) const;
-  void join(FilterPlanes& frame, int set, int row) const;
+  void join(FilterPlanes& frame, int set, FilterPlanes::Scalar signal, bool is_shifted,
+            int row) const;
   /// Restores in `to` the values before a window where it averaged pixels of another surface.
   void keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const;
 };

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decode/filter/filter_planes.hpp"
 
-#include <algorithm>
-
 #include "decode/filter/lit_kernel.hpp"
 
 namespace tofsmith {

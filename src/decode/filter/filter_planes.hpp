@@ -104,6 +104,11 @@ struct FilterPlanes {
   float* scalar(Scalar which) { return plane(which); }
   float* light(int set, int k) { return plane(scalars + set * measurements + k); }
   const float* light(int set, int k) const { return plane(scalars + set * measurements + k); }
+  /// Lists the first `count` planes of a set of light from offset `at` on.
+  template <typename List>
+  void list_light(int set, int count, List& planes, std::ptrdiff_t at = 0) {
+    for (int k = 0; k < count; ++k) planes[static_cast<std::size_t>(k)] = light(set, k) + at;
+  }
 };
 
 }  // namespace tofsmith

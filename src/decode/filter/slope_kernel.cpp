@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decode/filter/slope_kernel.hpp"
 
-#include <algorithm>
 #include <array>
 #include <iterator>
 #include <utility>
@@ -103,63 +102,62 @@ struct SlopeSums {
   }
 };
 
-void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y, float* excess) {
+void find_slopes(const SlopeTest& test, const FilterGrid& grid, int row, float* slope_x,
+                 float* slope_y, float* excess) {
   const auto places = ring_places(grid.stride);
   const Vector samples = all(test.samples), per_sample = all(1.0f / test.samples);
   const Vector tiny = all(min_depth_variance), zero = hn::Zero(Floats());
   const Vector inverse_max = all(1.0f / (4 * test.same_depth_sigma2)),
                inverse_max_pair = all(1.0f / (2 * test.same_depth_sigma2));
-  for (int y = first_row; y < first_row + rows; ++y)
-    for (int x = 0; x < grid.width; x += lanes_of()) {
-      const std::ptrdiff_t p = y * grid.stride + x;
-      const Vector depth = load(test.depth + p), variance = load(test.variance + p);
-      const auto neighbour = [&](std::ptrdiff_t away, Vector& difference, Vector& noise) {
-        difference = nearest(hn::Sub(load(test.depth + p + away), depth), samples, per_sample);
-        noise = hn::Max(load(test.variance + p + away), tiny);
-        return load(test.usable + p + away);
-      };
-      // First, use opposite neighbours whose differences from the pixel are opposite.
-      SlopeSums pairs;
-      for (std::size_t i = 0; i < std::size(half_rings); ++i) {
-        const RingPlace& place = places.data()[2 * i];
-        const std::ptrdiff_t away = place.away;
-        Vector ahead, behind, noise_ahead, noise_behind;
-        const Vector both =
-            hn::Mul(neighbour(away, ahead, noise_ahead), neighbour(-away, behind, noise_behind));
-        const Vector bend = hn::Add(ahead, behind), noise = hn::Add(noise_ahead, noise_behind);
-        const Vector all_noise = hn::MulAdd(variance, all(4.0f), noise);
-        const Vector w = hn::Div(
-            hn::Mul(weight_of(hn::Div(hn::Mul(bend, bend), all_noise), inverse_max_pair), both),
-            noise);
-        pairs.add(w, place, hn::Mul(hn::Sub(ahead, behind), all(0.5f)));
-      }
-      Vector across, along;
-      pairs.solve(across, along);
-      // Then, use all neighbours that agree with this plane.
-      SlopeSums singles;
-      Vector chi2 = zero, count = zero;
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        const RingPlace& place = places.data()[i];
-        Vector difference, noise;
-        const Vector usable = neighbour(place.away, difference, noise);
-        const Vector expected = hn::MulAdd(across, all(place.x), hn::Mul(along, all(place.y)));
-        const Vector beyond = hn::Sub(difference, expected);
-        const Vector squares = hn::Div(hn::Mul(beyond, beyond), hn::Add(noise, variance));
-        const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
-        singles.add(w, place, difference);
-        if (i < 2 * first_far_ring) continue;
-        const Vector robust_weight =
-            hn::Mul(weight_of(squares, hn::Mul(inverse_max, all(0.25f))), usable);
-        chi2 = hn::MulAdd(robust_weight, squares, chi2);
-        count = hn::Add(count, robust_weight);
-      }
-      singles.solve(across, along);
-      store(hn::Max(hn::Div(chi2, hn::Max(count, all(1e-6f))), all(1.0f)), excess + p);
-      const Mask usable = hn::Gt(load(test.usable + p), zero);
-      store(hn::IfThenElseZero(usable, across), slope_x + p);
-      store(hn::IfThenElseZero(usable, along), slope_y + p);
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t p = row * grid.stride + x;
+    const Vector depth = load(test.depth + p), variance = load(test.variance + p);
+    const auto neighbour = [&](std::ptrdiff_t away, Vector& difference, Vector& noise) {
+      difference = nearest(hn::Sub(load(test.depth + p + away), depth), samples, per_sample);
+      noise = hn::Max(load(test.variance + p + away), tiny);
+      return load(test.usable + p + away);
+    };
+    // First, use opposite neighbours whose differences from the pixel are opposite.
+    SlopeSums pairs;
+    for (std::size_t i = 0; i < std::size(half_rings); ++i) {
+      const RingPlace& place = places.data()[2 * i];
+      const std::ptrdiff_t away = place.away;
+      Vector ahead, behind, noise_ahead, noise_behind;
+      const Vector both =
+          hn::Mul(neighbour(away, ahead, noise_ahead), neighbour(-away, behind, noise_behind));
+      const Vector bend = hn::Add(ahead, behind), noise = hn::Add(noise_ahead, noise_behind);
+      const Vector all_noise = hn::MulAdd(variance, all(4.0f), noise);
+      const Vector w = hn::Div(
+          hn::Mul(weight_of(hn::Div(hn::Mul(bend, bend), all_noise), inverse_max_pair), both),
+          noise);
+      pairs.add(w, place, hn::Mul(hn::Sub(ahead, behind), all(0.5f)));
     }
+    Vector across, along;
+    pairs.solve(across, along);
+    // Then, use all neighbours that agree with this plane.
+    SlopeSums singles;
+    Vector chi2 = zero, count = zero;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const RingPlace& place = places.data()[i];
+      Vector difference, noise;
+      const Vector usable = neighbour(place.away, difference, noise);
+      const Vector expected = hn::MulAdd(across, all(place.x), hn::Mul(along, all(place.y)));
+      const Vector beyond = hn::Sub(difference, expected);
+      const Vector squares = hn::Div(hn::Mul(beyond, beyond), hn::Add(noise, variance));
+      const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
+      singles.add(w, place, difference);
+      if (i < 2 * first_far_ring) continue;
+      const Vector robust_weight =
+          hn::Mul(weight_of(squares, hn::Mul(inverse_max, all(0.25f))), usable);
+      chi2 = hn::MulAdd(robust_weight, squares, chi2);
+      count = hn::Add(count, robust_weight);
+    }
+    singles.solve(across, along);
+    store(hn::Max(hn::Div(chi2, hn::Max(count, all(1e-6f))), all(1.0f)), excess + p);
+    const Mask usable = hn::Gt(load(test.usable + p), zero);
+    store(hn::IfThenElseZero(usable, across), slope_x + p);
+    store(hn::IfThenElseZero(usable, along), slope_y + p);
+  }
 }
 
 struct CurvePlaces {
@@ -370,9 +368,9 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
   HWY_DYNAMIC_DISPATCH(weigh_along_slopes)(test, grid, strip, weights);
 }
 
-void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y, float* excess) {
-  HWY_DYNAMIC_DISPATCH(find_slopes)(test, grid, first_row, rows, slope_x, slope_y, excess);
+void find_slopes(const SlopeTest& test, const FilterGrid& grid, int row, float* slope_x,
+                 float* slope_y, float* excess) {
+  HWY_DYNAMIC_DISPATCH(find_slopes)(test, grid, row, slope_x, slope_y, excess);
 }
 
 void split_row(const CurvePoints& curve, const SplitRow& row, int width) {

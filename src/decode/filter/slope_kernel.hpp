@@ -43,8 +43,8 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
 /// if there are too few pixels.
 /// @param excess  factor >= 1 by which the scatter of far pixels exceeds the variance of their
 ///     depths
-void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y, float* excess);
+void find_slopes(const SlopeTest& test, const FilterGrid& grid, int row, float* slope_x,
+                 float* slope_y, float* excess);
 
 /// x = T o chi. The first `rank` coordinates span the decoding subspace.
 struct CurvePoints {

@@ -89,34 +89,26 @@ void Filter::Plan::split(FilterPlanes& frame, int from, int to, int row) const {
   SplitRow split{.depth = frame.scalar(FilterPlanes::depth) + at,
                  .guided = frame.scalar(FilterPlanes::usable) + at,
                  .signal = frame.scalar(FilterPlanes::signal) + at};
-  for (int k = 0; k < measurements; ++k) {
-    split.in[static_cast<std::size_t>(k)] = frame.light(from, k) + at;
-    split.out[static_cast<std::size_t>(k)] = frame.light(to, k) + at;
-  }
+  frame.list_light(from, measurements, split.in, at);
+  frame.list_light(to, measurements, split.out, at);
   split_row(points(), split, frame.grid.width);
 }
 
-void Filter::Plan::join(FilterPlanes& frame, int set, int row) const {
+void Filter::Plan::join(FilterPlanes& frame, int set, FilterPlanes::Scalar signal, bool is_shifted,
+                        int row) const {
   const std::ptrdiff_t at = row * frame.grid.stride;
   JoinRow join{.depth = frame.scalar(FilterPlanes::depth) + at,
                .guided = frame.scalar(FilterPlanes::usable) + at,
-               .signal = frame.scalar(FilterPlanes::signal_next) + at,
-               .shift = frame.scalar(FilterPlanes::shift) + at};
-  for (int k = 0; k < measurements; ++k)
-    join.light[static_cast<std::size_t>(k)] = frame.light(set, k) + at;
+               .signal = frame.scalar(signal) + at,
+               .shift = is_shifted ? frame.scalar(FilterPlanes::shift) + at : nullptr};
+  frame.list_light(set, measurements, join.light, at);
   join_row(points(), join, frame.grid.width);
 }
 
 void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const {
   const NearAndFar sums = near_and_far(frame, rest, to, window);
   for_each_row(frame, [&](int row) {
-    const std::ptrdiff_t at = row * frame.grid.stride;
-    JoinRow unmoved{.depth = frame.scalar(FilterPlanes::depth) + at,
-                    .guided = frame.scalar(FilterPlanes::usable) + at,
-                    .signal = frame.scalar(FilterPlanes::signal) + at};
-    for (int k = 0; k < measurements; ++k)
-      unmoved.light[static_cast<std::size_t>(k)] = frame.light(rest, k) + at;
-    join_row(points(), unmoved, frame.grid.width);
+    join(frame, rest, FilterPlanes::signal, /*is_shifted=*/false, row);
     compare_sums(points(), sums, frame.grid, row);
   });
   for_each_row(frame, [&](int row) { keep_near(sums, frame.grid, row); });
@@ -162,7 +154,7 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
       .max_difference_sigma = static_cast<float>(options.max_difference_sigma)};
   for_each_row(frame, [&](int row) {
     if (window == 0) {
-      find_slopes(test, frame.grid, row, 1, frame.scalar(FilterPlanes::energy),
+      find_slopes(test, frame.grid, row, frame.scalar(FilterPlanes::energy),
                   frame.scalar(FilterPlanes::inverse_sigma), frame.scalar(FilterPlanes::shift));
       const float* const excess = frame.scalar(FilterPlanes::shift) + row * frame.grid.stride;
       for (int x = 0; x < frame.grid.width; ++x) frame.averaged(row, x) *= excess[x];
@@ -182,17 +174,17 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
                              .samples = samples(),
                              .step = window_step(window)};
   if (window > 0) sums.balance = &balance;
-  for_each_strip(frame, window_step(window), true,
-                 [&](const FilterStrip& strip, const PairWeights& weights) {
-                   weigh_along_slopes(test, frame.grid, strip, weights);
-                   for (int r = 0; r < strip.rows; ++r) {
-                     add_weighted(sums, frame.grid, strip, weights, r);
-                     join(frame, to, strip.first_row + r);
-                     if (window + 1 == options.windows)
-                       find_offsets(sums, frame.grid, strip, weights, r,
-                                    frame.scalar(FilterPlanes::signal_next));
-                   }
-                 });
+  for_each_strip(
+      frame, window_step(window), true, [&](const FilterStrip& strip, const PairWeights& weights) {
+        weigh_along_slopes(test, frame.grid, strip, weights);
+        for (int r = 0; r < strip.rows; ++r) {
+          add_weighted(sums, frame.grid, strip, weights, r);
+          join(frame, to, FilterPlanes::signal_next, /*is_shifted=*/true, strip.first_row + r);
+          if (window + 1 == options.windows)
+            find_offsets(sums, frame.grid, strip, weights, r,
+                         frame.scalar(FilterPlanes::signal_next));
+        }
+      });
   if (window > 0) keep_near_sums(frame, rest, to, window);
 }
 

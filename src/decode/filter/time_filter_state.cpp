@@ -3,13 +3,12 @@
 #include "decode/filter/time_filter_state.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/shared/pixel_runs.hpp"
 #include "decode/filter/time_kernel.hpp"
 #include "decode/raw_scale.hpp"
+#include "decode/shared/marked_raw.hpp"
 
 namespace tofsmith {
 
@@ -247,10 +246,8 @@ void TimeFilter::State::add(const RawView& raw, AddedFrames& added) {
 }
 
 RawView TimeFilter::State::view(const AddedFrames& added) const {
-  RawView view = RawView::planar(added.means.data(), height, width, measurements);
-  view.averaged = added.averaged.pixels.data();
-  view.is_marked = true;
-  return view;
+  return marked_view(RawView::planar(added.means.data(), height, width, measurements),
+                     added.averaged.pixels.data());
 }
 
 void AddedFrames::resize(const RawView& raw) {

@@ -316,12 +316,6 @@ std::optional<double> LikelihoodSearch::confidence(const LikelihoodPixel& pixel,
                                nearest_bin(depth_row(found), scores_.samples()), within);
 }
 
-namespace {
-
-using PerMeasurement = std::array<double, max_measurements>;
-
-}  // namespace
-
 struct LikelihoodDecoder::Plan {
   /// @param white  whitened(table_)
   Plan(DecodingTable table_, const DecodeOptions& options_, const DecodingTable& white,
@@ -331,6 +325,8 @@ struct LikelihoodDecoder::Plan {
         scale(table),
         search(white, projection),
         residuals(white, projection, options) {}
+
+  using PerMeasurement = std::array<double, max_measurements>;
 
   DecodingTable table;
   DecodeOptions options;
@@ -413,19 +409,15 @@ void LikelihoodDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
 
 /// Reads electrons; returns false if a measurement is NaN or infinite.
 bool LikelihoodDecoder::Plan::read(const float* raw, PerMeasurement& electrons) const {
-  bool finite = true;
-  for (int k = 0; k < table.measurements(); ++k) {
-    electrons[static_cast<std::size_t>(k)] = scale.electrons(raw[k], k);
-    finite = finite && std::isfinite(raw[k]);
-  }
-  if (!table.has_rows()) return finite;
+  const bool is_finite = scale.read(raw, electrons.data());
+  if (!table.has_rows()) return is_finite;
   const PerMeasurement of_rows = electrons;
   for (int i = 0; i < table.measurements(); ++i) {
     double& white = electrons[static_cast<std::size_t>(i)] = 0.0;
     for (int k = 0; k < table.measurements(); ++k)
       white += table.whitening(i, k) * of_rows[static_cast<std::size_t>(k)];
   }
-  return finite;
+  return is_finite;
 }
 
 double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,

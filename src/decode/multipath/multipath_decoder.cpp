@@ -4,12 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
 
 #include "core/shared/enum_words.hpp"
 #include "decode/multipath/multipath_engine.hpp"
-#include "decode/output/pixel_output.hpp"
 #include "decode/search/nearest_bins.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/depth_image.hpp"

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
 #include "core/shared/decompositions.hpp"
@@ -252,11 +251,9 @@ void MultipathEngine::decode_block(const RawBlock& raw, const RangePart* parts,
     own_depth.resize(static_cast<std::size_t>(pixels));
     planes.depth_m = own_depth.data();
   }
-  RawView view =
-      RawView::interleaved(raw.values, 1, static_cast<int>(pixels), table().measurements());
-  view.averaged = raw.averaged;
-  view.noise = raw.noise;
-  view.is_marked = true;
+  const RawView view = marked_view(
+      RawView::interleaved(raw.values, 1, static_cast<int>(pixels), table().measurements()),
+      raw.averaged, raw.noise);
   if (parts)
     single_.decode_within(view, parts, planes);
   else

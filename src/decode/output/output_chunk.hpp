@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "decode/ambient_projection.hpp"
 #include "decode/search/shared/bin_records.hpp"
 
 namespace tofsmith {

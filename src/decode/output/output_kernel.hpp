@@ -9,7 +9,6 @@
 #include "decode/output/output_chunk.hpp"
 #include "decode/output/pixel_model.hpp"
 #include "decode/search/shared/bin_records.hpp"
-#include "decode/search/shared/pixel_tile.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 

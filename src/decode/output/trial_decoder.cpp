@@ -33,10 +33,6 @@ TrialDecoder::Zncc::Zncc(const DecodingTable& table, const AmbientProjection& pr
       rows(table.samples()),
       bins(table.bin_count()) {}
 
-std::int32_t TrialDecoder::Zncc::nearest_bin(std::int32_t row) const {
-  return nearest_bin_of_row(row, rows, bins);
-}
-
 TrialDecoder::TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights,
                            std::int64_t trials)
     : measurements_(table.measurements()),
@@ -85,7 +81,7 @@ void TrialDecoder::positions_of(bool sub_bin, const PixelTile& tile, double* dep
   }
   for (int i = 0; i < tile.pixels; ++i)
     depth_bin[i] = tile.bin[i] < 0 ? std::numeric_limits<double>::quiet_NaN()
-                                   : zncc_->nearest_bin(tile.bin[i]);
+                                   : nearest_bin_of_row(tile.bin[i], zncc_->rows, zncc_->bins);
 }
 
 }  // namespace tofsmith

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <variant>
 
 #include "decode/ambient_projection.hpp"

@@ -3,7 +3,6 @@
 #include "decode/search/circle_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>

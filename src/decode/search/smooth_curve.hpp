@@ -24,7 +24,6 @@ class SmoothCurve {
   /// that it also passes slowly.
   static std::optional<SmoothCurve> of(const RowMajorMatrix& curve);
 
-  int rows() const { return rows_; }
   /// At row n + offset, (N, columns).
   RowMajorMatrix points(double offset) const { return at(offset, false); }
   /// Derivatives per row.

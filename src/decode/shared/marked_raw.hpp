@@ -19,6 +19,14 @@ namespace tofsmith {
 /// @param buffer  memory of the result; unused if the marking replaces nothing
 RawView mark_raw(const RawView& raw, const RawMarking& marking, std::vector<std::byte>& buffer);
 
+/// Completes a view of numbers that need no marking.
+inline RawView marked_view(RawView numbers, const float* averaged, const NoiseRatios& noise = {}) {
+  numbers.averaged = averaged;
+  numbers.noise = noise;
+  numbers.is_marked = true;
+  return numbers;
+}
+
 /// A marked frame and its buffer. The first step of every decoder and filter.
 class MarkedRaw {
  public:

@@ -15,16 +15,16 @@ PhaseUnwrapper::PhaseUnwrapper(std::vector<int> frequencies, std::vector<double>
       weights_(std::move(weights)),
       whole_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)) {
   TOFSMITH_ASSERT_EQ(frequencies_.size(), weights_.size());
-  TOFSMITH_ASSERT_LE(count(), max_frequencies);
+  TOFSMITH_ASSERT_LE(std::ssize(frequencies_), max_frequencies);
 }
 
 /// The nearest candidate of frequency f changes where z is half way between two candidates. Between
 /// these places the choice is constant, so the minimum over all z is that of one choice at its
 /// weighted mean.
-template <typename Use>
-void PhaseUnwrapper::for_each_choice(const double* phase, const Use& use) const {
+Wraps PhaseUnwrapper::nearest(const double* phase, const RangePart* within) const {
   constexpr double just_after = 1e-9;  // [periods]; exceeds the rounding error of places
-  Wraps wraps;
+  Wraps wraps, best;
+  best.distance = std::numeric_limits<double>::infinity();
   for (std::size_t own = 0; own < frequencies_.size(); ++own)
     for (int wrap = 0; wrap < frequencies_[own]; ++wrap) {
       const double z = (phase[own] + wrap + 0.5) / frequencies_[own] + just_after;
@@ -40,16 +40,9 @@ void PhaseUnwrapper::for_each_choice(const double* phase, const Use& use) const 
         const double away = wraps.candidate[j] - wraps.depth;
         wraps.distance += weights_[j] * away * away;
       }
-      use(wraps);
+      if (wraps.distance < best.distance && (!within || within->contains(wraps.depth)))
+        best = wraps;
     }
-}
-
-Wraps PhaseUnwrapper::nearest(const double* phase, const RangePart* within) const {
-  Wraps best;
-  best.distance = std::numeric_limits<double>::infinity();
-  for_each_choice(phase, [&](const Wraps& wraps) {
-    if (wraps.distance < best.distance && (!within || within->contains(wraps.depth))) best = wraps;
-  });
   return best;
 }
 

@@ -26,18 +26,12 @@ class PhaseUnwrapper {
   /// @param weights      w_f > 0; only their ratios matter
   PhaseUnwrapper(std::vector<int> frequencies, std::vector<double> weights);
 
-  int count() const { return static_cast<int>(frequencies_.size()); }
-  double weight(int j) const { return weights_[static_cast<std::size_t>(j)]; }
-
   /// Returns the choice with the least weighted distance; an infinite distance if there is none.
   /// @param phase   (count) [periods of the frequency]
   /// @param within  part in which the depth must lie; null: anywhere
   Wraps nearest(const double* phase, const RangePart* within = nullptr) const;
 
  private:
-  template <typename Use>
-  void for_each_choice(const double* phase, const Use& use) const;
-
   std::vector<int> frequencies_;
   std::vector<double> weights_;
   double whole_weight_ = 0.0;

@@ -242,7 +242,6 @@ struct UnwrapDecoder::Plan {
   LobePosterior posterior;
   ResidualModel residuals;
 
-  bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double row_of(const Wraps& wraps) const;
   void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
@@ -274,7 +273,7 @@ void UnwrapDecoder::decode_depth_bins(const float* measurements, std::int64_t pi
   Plan::PerMeasurement electrons;
   for (std::int64_t i = 0; i < pixels; ++i) {
     depth_bin[i] = std::numeric_limits<double>::quiet_NaN();
-    if (!plan_->read(measurements + i * this->measurements(), electrons)) continue;
+    if (!plan_->scale.read(measurements + i * this->measurements(), electrons.data())) continue;
     const Wraps wraps = plan_->unwrapper.nearest(plan_->phases_of(electrons).data());
     depth_bin[i] = plan_->table.in_bins(plan_->row_of(wraps));
   }
@@ -313,15 +312,6 @@ void UnwrapDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
                });
 }
 
-bool UnwrapDecoder::Plan::read(const float* raw, PerMeasurement& electrons) const {
-  bool finite = true;
-  for (int k = 0; k < table.measurements(); ++k) {
-    electrons[static_cast<std::size_t>(k)] = scale.electrons(raw[k], k);
-    finite = finite && std::isfinite(raw[k]);
-  }
-  return finite;
-}
-
 UnwrapDecoder::Plan::PerFrequency UnwrapDecoder::Plan::phases_of(
     const PerMeasurement& electrons) const {
   std::array<std::complex<double>, max_frequencies> phasor;
@@ -339,7 +329,7 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share,
                                        const NoiseRatios& noise, const RangePart* part,
                                        std::size_t at, const DecodedView& decoded) const {
   PerMeasurement electrons, variance_e2, plane;
-  if (!read(raw, electrons)) return store_invalid(at, decoded);
+  if (!scale.read(raw, electrons.data())) return store_invalid(at, decoded);
   const PerFrequency phase = phases_of(electrons);
   const Wraps wraps = unwrapper.nearest(phase.data(), part);
   if (!std::isfinite(wraps.distance))

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "decode/output/output_kernel.hpp"
 #include "decode/search/chord_matcher.hpp"
@@ -47,7 +46,6 @@ class TrialDecoder {
     ChordMatcher matcher;
     OutputKernel outputs;
     int rows, bins;
-    std::int32_t nearest_bin(std::int32_t row) const;
   };
   void positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const;
 
