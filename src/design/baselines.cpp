@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "code/shared/family_members.hpp"
@@ -19,7 +18,6 @@
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
 
@@ -85,10 +83,9 @@ double first_error_m(const CodeSet& code, const Camera& camera, int trials, std:
 std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, const Camera& camera,
                                    int trials, std::uint64_t seed) {
   std::vector<double> errors_m(codes.size(), infinity);
-  parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
-    for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
-         ++i)
-      if (codes[i]) errors_m[i] = first_error_m(*codes[i], camera, trials, seed);
+  parallel_for(std::ssize(codes), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (codes[at]) errors_m[at] = first_error_m(*codes[at], camera, trials, seed);
   });
   return errors_m;
 }
@@ -195,14 +192,12 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   Contenders found;
   std::vector<std::optional<std::string>> reasons(names.size());
   std::vector<std::optional<CodeSet>> codes(names.size());
-  parallel_for_blocks(std::ssize(names), 1, [&](IndexRange block) {
-    for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
-         ++i) {
-      reasons[i] = why_no_family(names[i], camera);
-      if (reasons[i]) continue;
-      codes[i] = build_family(names[i], camera);
-      reasons[i] = why_not_comparable(*codes[i], camera);
-    }
+  parallel_for(std::ssize(names), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    reasons[at] = why_no_family(names[at], camera);
+    if (reasons[at]) return;
+    codes[at] = build_family(names[at], camera);
+    reasons[at] = why_not_comparable(*codes[at], camera);
   });
   std::vector<const CodeSet*> comparable(names.size(), nullptr);
   for (std::size_t i = 0; i < names.size(); ++i)

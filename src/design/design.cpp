@@ -103,29 +103,24 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                      [&](const Progress& part) -> std::vector<Candidate> {
                        return {factorized_candidate(target, camera, options, part)};
                      }});
-  if (camera.sensor.readout == Readout::rows) {
-    if (includes(options.method, DesignMethod::optimize))
-      for (const int rows : designable_rows(options))
-        tasks.push_back({DesignMethod::optimize, rows_name(rows), 3.0,
-                         why_no_row_design(camera, rows), [&, rows](const Progress& part) {
-                           return row_candidates(camera, rows, options, part);
-                         }});
-    std::erase_if(tasks, [&](const Task& task) {
-      return !serves(task.method, task.why_not, options, result);
-    });
-    return tasks;
-  }
+  const bool has_rows = camera.sensor.readout == Readout::rows;
+  if (has_rows && includes(options.method, DesignMethod::optimize))
+    for (const int rows : designable_rows(options))
+      tasks.push_back({DesignMethod::optimize, rows_name(rows), 3.0,
+                       why_no_row_design(camera, rows), [&, rows](const Progress& part) {
+                         return row_candidates(camera, rows, options, part);
+                       }});
   // With `best`, search only if the camera has a shortest pulse, which defines its chips.
   const bool searches = options.method == DesignMethod::search ||
                         (options.method == DesignMethod::best && camera.sensor.shortest_pulse_s);
-  if (searches &&
+  if (!has_rows && searches &&
       serves(DesignMethod::search, why_nothing_to_search(camera, options), options, result))
     for (const int exposures : searchable_exposures(camera, options))
       tasks.push_back({DesignMethod::search, searched_name(exposures), 3.0,
                        why_not_searchable(camera, exposures), [&, exposures](const Progress& part) {
                          return searched_candidates(camera, exposures, options, part);
                        }});
-  if (includes(options.method, DesignMethod::optimize))
+  if (!has_rows && includes(options.method, DesignMethod::optimize))
     for (const int exposures : optimizable_exposures(camera, options, atlas))
       tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
                        why_not_optimizable(camera, exposures),

@@ -36,6 +36,10 @@ Eigen::VectorXd with_smallest_shares(Eigen::VectorXd shares) {
   return shares;
 }
 
+Eigen::VectorXd equal_shares(Eigen::Index exposures) {
+  return Eigen::VectorXd::Constant(exposures, 1.0 / static_cast<double>(exposures));
+}
+
 }  // namespace
 
 Eigen::VectorXd shares_of_logits(const Eigen::VectorXd& logits) {
@@ -81,14 +85,6 @@ Eigen::VectorXd minimize_over_shares(Eigen::VectorXd shares, const ShareObjectiv
   }
   return shares;
 }
-
-namespace {
-
-Eigen::VectorXd equal_shares(Eigen::Index exposures) {
-  return Eigen::VectorXd::Constant(exposures, 1.0 / static_cast<double>(exposures));
-}
-
-}  // namespace
 
 Eigen::VectorXd shares_of(const CodeSet& code) {
   const std::vector<double>& shares = code.exposure_shares();

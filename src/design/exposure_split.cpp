@@ -144,11 +144,6 @@ struct TriedCode {
   double error_m = infinity;
 };
 
-CodeSet with_shares(const CodeSet& code, const Eigen::VectorXd& shares) {
-  const Eigen::VectorXd normalized = shares / shares.sum();  // corrects rounding errors
-  return code.with_exposure_shares({normalized.begin(), normalized.end()});
-}
-
 /// Descends from the shares of the code. None if the soft decoder does not support the camera.
 std::optional<Eigen::VectorXd> shares_by_soft_error(const CodeSet& code, Camera camera,
                                                     const DesignOptions& options) {
@@ -173,7 +168,8 @@ CodeSet with_chosen_shares(const CodeSet& code, const Camera& camera,
                            const DesignOptions& options) {
   TriedCode best{code, tried_error_m(code, camera, options, choosing_trials)};
   const auto try_shares = [&](const Eigen::VectorXd& shares) {
-    TriedCode tried{with_shares(code, shares)};
+    const Eigen::VectorXd normalized = shares / shares.sum();  // corrects rounding errors
+    TriedCode tried{code.with_exposure_shares({normalized.begin(), normalized.end()})};
     tried.error_m = tried_error_m(tried.code, camera, options, choosing_trials);
     if (tried.error_m < best.error_m) best = std::move(tried);
   };

@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <optional>
 #include <utility>
 
 #include "camera/shared/depth_prior.hpp"
@@ -18,38 +16,12 @@
 #include "design/exposure_split.hpp"
 #include "simulate/shared/camera_bounds.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
-
-namespace {
-
-/// Limit of two-return errors, relative to the best initial code.
-class TwoReturnLimit {
- public:
-  explicit TwoReturnLimit(double max_loss) : max_loss_(max_loss) {}
-
-  void add_given(const std::optional<OperatingMultipathReport>& report) {
-    if (report && report->two_return)
-      min_m_ = std::min(min_m_, report->two_return->circular_m.value);
-  }
-  /// Returns a factor on the ranking error: two-return error / limit, clipped to [1, 1.25]; 1.25 if
-  /// two returns cannot be decoded; 1 if this is true of all initial codes.
-  double excess(const std::optional<OperatingMultipathReport>& report) const {
-    if (!report || std::isinf(min_m_)) return 1.0;
-    constexpr double max_excess = 1.25;
-    if (!report->two_return) return max_excess;
-    return std::clamp(report->two_return->circular_m.value / (max_loss_ * min_m_), 1.0, max_excess);
-  }
-
- private:
-  double max_loss_;
-  double min_m_ = std::numeric_limits<double>::infinity();
-};
-
-}  // namespace
 
 CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
                   std::uint64_t seed) {
@@ -75,10 +47,6 @@ std::vector<MeasurementReport> reports_of(const CodeSet& code, const std::string
 
 namespace {
 
-int measurements_per_exposure(const Sensor& sensor) {
-  return sensor.readout == Readout::difference ? 1 : sensor.taps;
-}
-
 BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
                             const std::vector<std::string>& left_out) {
   if (camera.light.peak_factor <= 1.0)
@@ -94,7 +62,8 @@ BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
   const char* const which = listed > 0 ? "number of exposure_s" : "number of playback.order";
   if (has_rows && exposures > 1)
     return broken(which, exposures, "must be 1: rows are sums of the light of one exposure");
-  const auto measurements = static_cast<int>(exposures) * measurements_per_exposure(camera.sensor);
+  const int per_exposure = camera.sensor.readout == Readout::difference ? 1 : camera.sensor.taps;
+  const int measurements = static_cast<int>(exposures) * per_exposure;
   if (exposures > 0 && !has_rows && measurements < (camera.sensor.subtracts() ? 2 : 3))
     return broken(which, exposures,
                   fmt::format("gives {} measurement{}; signal, ambient light and depth are three "
@@ -133,11 +102,9 @@ void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& op
 }
 
 EvaluateOptions judging_options(const DesignOptions& options) {
-  EvaluateOptions judging;
-  judging.trials = options.trials;
-  judging.seed = options.seed;
-  judging.outlier_threshold_m = options.outlier_threshold_m;
-  return judging;
+  return {.trials = options.trials,
+          .seed = options.seed,
+          .outlier_threshold_m = options.outlier_threshold_m};
 }
 
 void evaluate_candidate(Candidate& candidate, const Camera& camera, const EvaluateOptions& judging,
@@ -183,11 +150,6 @@ std::vector<Candidate*> possible_winners(std::vector<Candidate>& candidates,
   return possible.empty() ? all : possible;
 }
 
-/// False if another criterion than the error without disturbances ranks the codes.
-bool ranks_by_error(const Camera& camera, const DesignOptions& options) {
-  return !options.robust && !camera.operating.multipath && !camera.operating.interference;
-}
-
 /// Evaluates codes again, with more trials, if their errors do not differ significantly from the
 /// smallest. Linear errors have standard errors of some percent, more than designs differ.
 void judge_contenders(const Camera& camera, const DesignOptions& options, CameraBounds& bounds,
@@ -202,7 +164,7 @@ void judge_contenders(const Camera& camera, const DesignOptions& options, Camera
   for (std::size_t round = 0; round < trial_factors.size(); ++round) {
     EvaluateOptions judging = judging_options(options);
     judging.trials *= trial_factors[round];
-    Estimate least{std::numeric_limits<double>::infinity(), 0.0};
+    Estimate least{infinity, 0.0};
     for (const Candidate* candidate : possible)
       if (error_of(candidate).value < least.value) least = error_of(candidate);
     std::vector<Candidate*> close;
@@ -230,14 +192,27 @@ void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOp
                  {.trials = std::min(options.trials, max_trials), .seed = options.seed}, progress);
 }
 
+/// Returns ranking errors, multiplied by two-return error / limit, clipped to [1, 1.25]; by 1.25 if
+/// two returns cannot be decoded; by 1 if this is true of all initial codes. The limit is relative
+/// to the best initial code.
 std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const Camera& camera,
                                const DesignOptions& options) {
-  TwoReturnLimit two_returns(options.optimize.max_two_return_loss);
+  constexpr double max_excess = 1.25;
+  double min_m = infinity;
   for (const Candidate& c : candidates)
-    if (!c.is_designed()) two_returns.add_given(c.multipath);
+    if (!c.is_designed() && c.multipath && c.multipath->two_return)
+      min_m = std::min(min_m, c.multipath->two_return->circular_m.value);
+  const double limit_m = options.optimize.max_two_return_loss * min_m;
   std::vector<double> ranking_m;
-  for (const Candidate& c : candidates)
-    ranking_m.push_back(two_returns.excess(c.multipath) * ranking_error_m(c, camera, options));
+  for (const Candidate& c : candidates) {
+    double excess = 1.0;
+    if (c.multipath && min_m < infinity)
+      excess =
+          c.multipath->two_return
+              ? std::clamp(c.multipath->two_return->circular_m.value / limit_m, 1.0, max_excess)
+              : max_excess;
+    ranking_m.push_back(excess * ranking_error_m(c, camera, options));
+  }
   return ranking_m;
 }
 
@@ -307,7 +282,9 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
                       const Progress& progress) {
   leave_out_what_tells_no_depth(camera, options, result);
   CameraBounds bounds(camera);
-  const bool has_contenders = ranks_by_error(camera, options);
+  // Otherwise, another criterion than the error without disturbances ranks the codes.
+  const bool has_contenders =
+      !options.robust && !camera.operating.multipath && !camera.operating.interference;
   const ProgressParts parts(progress,
                             {60, has_contenders ? 30.0 : 0.0, options.robust ? 0.0 : 10.0});
   const ProgressParts of_candidates(parts[0], result.candidates.size());

@@ -47,7 +47,9 @@ class CodePool {
       : options_(options), design_(with_effort({}, options.effort)) {
     design_.seed = options.seed;
     design_.trials = std::clamp(options.trials / 10, 1000, 5000);
-    add_standard_codes(camera);
+    DesignResult standard;
+    add_baselines(camera, design_, {}, standard);
+    for (const Candidate& candidate : standard.candidates) add(candidate.code, camera);
     design_.baselines = suggested_baselines(camera, design_);  // only these, for speed
   }
 
@@ -116,12 +118,6 @@ class CodePool {
   }
 
  private:
-  void add_standard_codes(const Camera& camera) {
-    DesignResult standard;
-    add_baselines(camera, design_, {}, standard);
-    for (const Candidate& candidate : standard.candidates) add(candidate.code, camera);
-  }
-
   void add_atlas_codes_for(const Camera& camera, const Progress& progress) {
     constexpr std::size_t most = 4;
     const std::vector<CodeSet> codes =
@@ -141,12 +137,10 @@ class CodePool {
   /// Evaluates codes in parallel, because few trials use only one thread.
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
-    parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
-      for (std::int64_t k = block.begin; k < block.end; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        if (!why_no_depth(*codes[i], camera))
-          errors_m[i] = error_of(*codes[i], camera, first_trials());
-      }
+    parallel_for(std::ssize(codes), [&](std::int64_t i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (!why_no_depth(*codes[at], camera))
+        errors_m[at] = error_of(*codes[at], camera, first_trials());
     });
     return errors_m;
   }
@@ -164,14 +158,13 @@ class CodePool {
 /// Geometric mean over the operating points [m]; 0: no bound.
 double bound_m(const Camera& given) {
   const Camera camera = judged_camera(given);
-  double log_sum = 0.0;
   const std::vector<OperatingPoint> points = camera.operating.points();
   double least_m = infinity;
   for (int exposures = 1; exposures <= 8; ++exposures) {
     const std::size_t listed = camera.exposure_s.each_s.size();
     if (listed != 0 && listed != static_cast<std::size_t>(exposures)) continue;
     const ReceiverBound bound(camera, exposures);
-    log_sum = 0.0;
+    double log_sum = 0.0;
     for (OperatingPoint point : points) {
       point.signal_e_per_s *= camera.operating.albedo;
       log_sum += std::log(camera.operating.uniform_albedo ? bound.mae_uniform_albedo_m(point)

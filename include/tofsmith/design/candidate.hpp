@@ -63,7 +63,6 @@ struct ExposureOrder {
   double rms_bias_m = 0.0;        ///< MotionBias::rms_m() in this order
   double given_rms_bias_m = 0.0;  ///< in the order of the proposed code
 };
-/// Describes the fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ExposureOrder> auto& o) {
   return std::tuple(Field("order", o.order, at_least(0)),
                     Field("rms_bias_m", o.rms_bias_m, at_least(0)),

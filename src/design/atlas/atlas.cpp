@@ -115,15 +115,11 @@ class AtlasLines {
 
   bool next() {
     do {
-      if (rest_.empty()) {
-        ++number_;
-        words_ = {};
-        return false;
-      }
+      ++number_;
       const std::size_t end = std::min(rest_.find('\n'), rest_.size());
       words_ = rest_.substr(0, end);
+      if (rest_.empty()) return false;
       rest_.remove_prefix(std::min(end + 1, rest_.size()));
-      ++number_;
     } while (words_.empty() || words_.front() == '#');
     return true;
   }
@@ -142,15 +138,17 @@ class AtlasLines {
   }
   double number(double min, double max) {
     const std::string_view found = word();
-    double value = 0.0;
-    if (!read(found, value) || !(value >= min && value <= max))
+    const std::optional<double> value = number_in(found);
+    if (!value || !(*value >= min && *value <= max))
       refuse(fmt::format("found \"{}\"; expected a number in [{}, {}]", found, min, max));
-    return value;
+    return *value;
   }
   int whole(int min, int max) {
     const std::string_view found = word();
+    const char* const end = found.data() + found.size();
     int value = 0;
-    if (!read(found, value) || value < min || value > max)
+    const auto [rest, error] = std::from_chars(found.data(), end, value);
+    if (error != std::errc() || rest != end || value < min || value > max)
       refuse(fmt::format("found \"{}\"; expected a whole number in [{}, {}]", found, min, max));
     return value;
   }
@@ -159,19 +157,7 @@ class AtlasLines {
   }
 
  private:
-  static bool read(std::string_view word, int& value) {
-    const char* const end = word.data() + word.size();
-    const auto [rest, error] = std::from_chars(word.data(), end, value);
-    return error == std::errc() && rest == end && !word.empty();
-  }
-  static bool read(std::string_view word, double& value) {
-    const std::optional<double> number = number_in(word);
-    value = number.value_or(0.0);
-    return number && std::isfinite(value);
-  }
-
-  std::string_view rest_, words_;
-  std::string_view file_;
+  std::string_view rest_, words_, file_;
   std::int64_t number_ = 0;
 };
 
@@ -257,8 +243,7 @@ AtlasEntry read_entry(AtlasLines& lines) {
 
 std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file) {
   AtlasLines lines(text, file);
-  const bool has_head = lines.next() && lines.rest_of_line().starts_with(atlas_head);
-  if (!has_head)
+  if (!lines.next() || !lines.rest_of_line().starts_with(atlas_head))
     lines.refuse(fmt::format("found \"{}\"; expected \"{}{}\"", lines.rest_of_line().substr(0, 40),
                              atlas_head, atlas_version));
   if (const std::string_view version = lines.rest_of_line().substr(atlas_head.size());

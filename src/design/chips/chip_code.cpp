@@ -22,16 +22,9 @@ namespace {
 
 Waveform chip_waveform(ChipWord word, int chips, double level) {
   if (word == 0) return Waveform::constant(0.0);
-  if (word == all_chips(chips)) return Waveform::constant(level);
-  std::vector<OnInterval> on;
-  const auto is_on = [&](int chip) { return (word >> (chip % chips) & 1U) != 0; };
-  for (int rise = 0; rise < chips; ++rise) {
-    if (!is_on(rise) || is_on(rise + chips - 1)) continue;
-    int fall = rise + 1;
-    while (is_on(fall)) ++fall;
-    on.push_back({static_cast<double>(rise) / chips, static_cast<double>(fall) / chips});
-  }
-  return Waveform::binary(std::move(on), level);
+  Eigen::VectorXd is_on(chips);
+  for (int k = 0; k < chips; ++k) is_on[k] = word >> k & 1U;
+  return Waveform::binary_from_samples(is_on, level);
 }
 
 }  // namespace

@@ -6,11 +6,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 
-#include "design/chips/chip_margin.hpp"
 #include "design/chips/chip_metric.hpp"
-#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -34,30 +31,7 @@ bool repeats(const ChipCode& code) {
   return false;
 }
 
-}  // namespace
-
-FisherMatrix& FisherMatrix::operator+=(const FisherMatrix& other) {
-  zz += other.zz;
-  zs += other.zs;
-  ss += other.ss;
-  za += other.za;
-  sa += other.sa;
-  aa += other.aa;
-  return *this;
-}
-
-double FisherMatrix::depth_variance() const {
-  if (zs == 0.0 && za == 0.0) return zz > 0.0 ? 1.0 / zz : infinity;  // such as for known light
-  // Schur complements: eliminate ambient light, then signal.
-  const double per_ambient = 1.0 / aa;
-  const double signal = ss - sa * sa * per_ambient;
-  constexpr double rounding = 1e-12;
-  if (!(signal > rounding * ss)) return infinity;
-  const double across = zs - za * sa * per_ambient;
-  const double depth = zz - za * za * per_ambient - across * across / signal;
-  return depth > rounding * zz ? 1.0 / depth : infinity;
-}
-
+/// Adds one exposure at all nodes (4 n).
 void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, const ChipLight& light,
                   FisherMatrix* nodes) {
   const double electrons = light.electrons_of(std::popcount(modulation));
@@ -87,7 +61,8 @@ void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, cons
   }
 }
 
-double mean_depth_variance(const FisherMatrix* nodes, int chips, double limit) {
+/// Returns gamma [chips^2], the mean of depth_variance() over depth; stops above `limit`.
+double mean_depth_variance(const FisherMatrix* nodes, int chips, double limit = infinity) {
   const double stop = limit * chips;
   double sum = 0.0;
   for (int s = 0; s < chips; ++s) {
@@ -99,12 +74,36 @@ double mean_depth_variance(const FisherMatrix* nodes, int chips, double limit) {
   return sum / chips;
 }
 
-double chip_gamma(const ChipCode& code, const ChipLight& light, double limit) {
+double chip_gamma(const ChipCode& code, const ChipLight& light) {
   std::array<FisherMatrix, std::size_t{max_chips} * nodes_per_chip> nodes{};
   for (int e = 0; e < code.exposures(); ++e)
     add_exposure(code.modulation[static_cast<std::size_t>(e)], code.taps_of(e), code.taps, light,
                  nodes.data());
-  return mean_depth_variance(nodes.data(), code.chips, limit);
+  return mean_depth_variance(nodes.data(), code.chips);
+}
+
+}  // namespace
+
+FisherMatrix& FisherMatrix::operator+=(const FisherMatrix& other) {
+  zz += other.zz;
+  zs += other.zs;
+  ss += other.ss;
+  za += other.za;
+  sa += other.sa;
+  aa += other.aa;
+  return *this;
+}
+
+double FisherMatrix::depth_variance() const {
+  if (zs == 0.0 && za == 0.0) return zz > 0.0 ? 1.0 / zz : infinity;  // such as for known light
+  // Schur complements: eliminate ambient light, then signal.
+  const double per_ambient = 1.0 / aa;
+  const double signal = ss - sa * sa * per_ambient;
+  constexpr double rounding = 1e-12;
+  if (!(signal > rounding * ss)) return infinity;
+  const double across = zs - za * sa * per_ambient;
+  const double depth = zz - za * za * per_ambient - across * across / signal;
+  return depth > rounding * zz ? 1.0 / depth : infinity;
 }
 
 FisherMatrix largest_tap_fisher(int correlation, int next, int open_chips,
@@ -151,8 +150,7 @@ std::vector<FisherMatrix> ChipJudge::nodes_of(const ChipCode& code, int exposure
 }
 
 double ChipJudge::score(const ChipCode& code) const {
-  return score_with_last(code, nodes_of(code, code.exposures() - 1),
-                         std::numeric_limits<double>::infinity());
+  return score_with_last(code, nodes_of(code, code.exposures() - 1), infinity);
 }
 
 double ChipJudge::score_with_last(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
@@ -165,8 +163,8 @@ double ChipJudge::score_with_last(const ChipCode& code, const std::vector<Fisher
     std::copy(begin, begin + static_cast<std::ptrdiff_t>(nodes_per_point), sum.begin());
     add_exposure(code.modulation.back(), code.taps_of(code.exposures() - 1), taps_, lights_[p],
                  sum.data());
-    const double gamma = mean_depth_variance(
-        sum.data(), chips_, lights_.size() == 1 ? limit : std::numeric_limits<double>::infinity());
+    const double gamma =
+        mean_depth_variance(sum.data(), chips_, lights_.size() == 1 ? limit : infinity);
     if (lights_.size() == 1) return gamma;
     log_sum += std::log(gamma);
   }
@@ -208,7 +206,7 @@ double ChipJudge::sampled_margin_share(const ChipCode& code) const {
 }
 
 double ChipJudge::proven_margin_sigma(const ChipCode& code) const {
-  double sigma = 0.0, min_share = std::numeric_limits<double>::infinity();
+  double sigma = 0.0, min_share = infinity;
   for (std::size_t p = 0; p < lights_.size(); ++p) {
     const double here = ChipMargin(code, lights_[p], separation_periods_).proven_sigma();
     const double share = here / std::max(1e-9, asked_sigma_[p]);

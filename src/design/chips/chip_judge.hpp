@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "design/chips/chip_margin.hpp"
@@ -22,17 +20,6 @@ struct FisherMatrix {
 };
 
 inline constexpr int nodes_per_chip = 4;
-
-/// Adds one exposure at all nodes (4 n).
-void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, const ChipLight& light,
-                  FisherMatrix* nodes);
-
-/// Returns gamma [chips^2], the mean of depth_variance() over depth; stops above `limit`.
-double mean_depth_variance(const FisherMatrix* nodes, int chips,
-                           double limit = std::numeric_limits<double>::infinity());
-
-double chip_gamma(const ChipCode& code, const ChipLight& light,
-                  double limit = std::numeric_limits<double>::infinity());
 
 /// Returns the Fisher matrix of one tap at the first of two adjacent depths, with the largest
 /// weight 1 / variance between them.

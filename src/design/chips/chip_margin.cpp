@@ -59,11 +59,6 @@ ChipLight::ChipLight(const Camera& camera, const OperatingPoint& point, int code
       min_e2, constant_variance_e2_of(camera.sensor) + time_s * camera.sensor.dark_current_e_per_s);
 }
 
-namespace {
-/// The proof fails instead of bisecting depths below this length [chips].
-constexpr double shortest_stretch = 1e-7;
-}  // namespace
-
 struct ChipMargin::Whitening {
   int size;
   Values weight, weighted_open;
@@ -200,6 +195,7 @@ double ChipMargin::nearest(int chip, double place) const {
 /// x least, proven by bisection. Smaller exact distances lower `least`.
 bool ChipMargin::clears(int chip, double begin, double end, int alternative_chip, double& least,
                         double factor) const {
+  constexpr double shortest_stretch = 1e-7;  // [chips]; the proof fails instead of bisecting it
   double bound = infinity;
   for (const Stretch& alternative : alternatives(chip + begin, chip + end, alternative_chip))
     bound = std::min(bound, lower_bound(chip, begin, end, alternative));

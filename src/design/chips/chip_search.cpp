@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <string>
 #include <unordered_set>
-#include <vector>
 
 #include "camera/shared/listed_exposures.hpp"
 #include "core/shared/random.hpp"
@@ -17,7 +15,6 @@
 #include "design/chips/chip_judge.hpp"
 #include "design/chips/chip_margin.hpp"
 #include "design/chips/exhaustive_search.hpp"
-#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
 
@@ -182,12 +179,6 @@ bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& op
          effort * exhaustive_size(rules, options.exposures) <= options.max_exhaustive;
 }
 
-ChipFinalist finalist_of(const ScoredCode& scored, const ChipJudge& judge) {
-  return {.code = scored.code,
-          .rms_m = judge.rms_m(scored.score),
-          .margin_sigma = judge.proven_margin_sigma(scored.code)};
-}
-
 std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& rules,
                        const ChipSearchOptions& options, bool is_found) {
   return fmt::format(
@@ -282,7 +273,9 @@ ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& op
   }
 
   for (const ScoredCode& scored : best.codes())
-    result.finalists.push_back(finalist_of(scored, judge));
+    result.finalists.push_back({.code = scored.code,
+                                .rms_m = judge.rms_m(scored.score),
+                                .margin_sigma = judge.proven_margin_sigma(scored.code)});
   for (const ScoredCode& scored : best.improvements())
     result.log.improvements.push_back({scored.code, judge.rms_m(scored.score), scored.share});
   result.log.seconds =

@@ -50,23 +50,21 @@ double BestCodes::limit() const {
   return codes_.size() < count_ ? std::numeric_limits<double>::infinity() : codes_.back().score;
 }
 
-bool BestCodes::offer(const ChipCode& code, double score, double share) {
-  return offer(ScoredCode{code, score, share, symmetry_key(code)});
+void BestCodes::offer(const ChipCode& code, double score, double share) {
+  offer(ScoredCode{code, score, share, symmetry_key(code)});
 }
 
-bool BestCodes::offer(ScoredCode code) {
+void BestCodes::offer(ScoredCode code) {
   const auto same = std::find_if(codes_.begin(), codes_.end(),
                                  [&](const auto& item) { return item.key == code.key; });
-  if (same != codes_.end()) return false;
+  if (same != codes_.end()) return;
   const auto place =
       std::upper_bound(codes_.begin(), codes_.end(), code.score,
                        [](const auto& value, const auto& item) { return value < item.score; });
-  if (place == codes_.end() && codes_.size() == count_) return false;
-  const bool is_best = place == codes_.begin();
-  if (is_best) improvements_.push_back(code);
+  if (place == codes_.end() && codes_.size() == count_) return;
+  if (place == codes_.begin()) improvements_.push_back(code);
   codes_.insert(place, std::move(code));
   if (codes_.size() > count_) codes_.pop_back();
-  return is_best;
 }
 
 void BestCodes::merge(const BestCodes& other) {

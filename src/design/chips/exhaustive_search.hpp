@@ -30,13 +30,13 @@ class BestCodes {
 
   /// Returns the worst kept score, or infinity if there is room.
   double limit() const;
-  bool offer(const ChipCode& code, double score, double share);
+  void offer(const ChipCode& code, double score, double share);
   void merge(const BestCodes& other);
   const std::vector<ScoredCode>& codes() const { return codes_; }
   const std::vector<ScoredCode>& improvements() const { return improvements_; }
 
  private:
-  bool offer(ScoredCode code);
+  void offer(ScoredCode code);
   std::size_t count_;
   std::vector<ScoredCode> codes_;
   std::vector<ScoredCode> improvements_;

@@ -77,7 +77,7 @@ class ExposurePairSearch {
                      [](const auto& a, const auto& b) { return a.orbit < b.orbit; });
     for (std::size_t i = 0; i < exposures_.size(); ++i)
       if (exposures_[i].is_first) firsts_.push_back(i);
-    const std::size_t blocks = blocks_from(0);
+    const std::size_t blocks = (exposures_.size() + scan_lanes - 1) / scan_lanes;
     const auto depths = static_cast<std::size_t>(n_);
     for (const ChipLight& light : task.judge->lights()) {
       std::vector<float>& rows =
@@ -121,10 +121,6 @@ class ExposurePairSearch {
     return sum;
   }
 
-  std::size_t blocks_from(std::size_t block) const {
-    return (exposures_.size() + scan_lanes - 1) / scan_lanes - block;
-  }
-
   ChipCode code_of(const Exposure& first, const Exposure& second) const {
     ChipCode code{n_, task_.rules.taps, {first.light, second.light}, {}};
     for (const Exposure* exposure : {&first, &second})
@@ -147,7 +143,7 @@ class ExposurePairSearch {
     constexpr std::size_t blocks_at_once = 64;
     std::array<std::uint32_t, blocks_at_once> found{};
     std::int64_t looked_at = 0;
-    const std::size_t all_blocks = blocks_from(0);
+    const std::size_t all_blocks = (exposures_.size() + scan_lanes - 1) / scan_lanes;
     for (std::size_t block = first / scan_lanes; block < all_blocks; block += blocks_at_once) {
       const std::size_t count = std::min(blocks_at_once, all_blocks - block);
       const InformationRows others = rows_from(block, limit_of(task_, best));

@@ -4,11 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "core/shared/enum_words.hpp"
@@ -77,12 +74,6 @@ std::string CirculantTvResult::brief() const {
                      pieces);
 }
 
-namespace {
-
-constexpr int fallback_steps = 3000;
-
-}  // namespace
-
 CirculantTvResult solve_circulant_tv(const CirculantTvProblem& problem,
                                      const CirculantTvOptions& options,
                                      const std::optional<Eigen::VectorXd>& warm_start) {
@@ -92,9 +83,8 @@ CirculantTvResult solve_circulant_tv(const CirculantTvProblem& problem,
       warm_start ? solver.solve(problem, options, *warm_start) : solver.solve(problem, options);
   if (best.termination == Termination::converged) return best;
 
-  CirculantTvAdmmOptions admm_options;
-  admm_options.max_iterations = fallback_steps;
-  admm_options.certificate_tolerance = options.certificate_tolerance;
+  const CirculantTvAdmmOptions admm_options{.max_iterations = 3000,
+                                            .certificate_tolerance = options.certificate_tolerance};
   const CirculantTvResult split = solve_circulant_tv_by_admm(problem, admm_options, best.x);
   if (split.certificate < best.certificate) best = split;
   if (best.termination == Termination::converged) return best;

@@ -182,7 +182,7 @@ class Splitting {
     z_before_ = z_;
     shifted_ = over_relaxation * x_ + (1 - over_relaxation) * z_ + u_;
     prox_.circular(shifted_, problem_.total_variation_weight / penalty_, ring_dual_, z_);
-    price_ = project_on_box_and_budget(z_, problem_.upper_bound, problem_.budget);
+    project_on_box_and_budget(z_, problem_.upper_bound, problem_.budget);
     u_ = shifted_ - z_;
   }
 
@@ -203,7 +203,7 @@ class Splitting {
   const CirculantTvProblem& problem_;
   CirculantOperator operator_;
   TotalVariationProx prox_;
-  double penalty_ = 0, ring_dual_ = 0, price_ = 0;
+  double penalty_ = 0, ring_dual_ = 0;
   Eigen::VectorXd x_, z_, u_, z_before_, shifted_, curvature_;
   Eigen::VectorXcd pull_, half_;  // pull_: spectrum of A^T b
 };

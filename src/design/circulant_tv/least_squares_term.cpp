@@ -8,7 +8,6 @@
 #include <complex>
 #include <numbers>
 
-#include "core/shared/periodic.hpp"
 #include "design/circulant_tv/proximal_operators.hpp"
 
 namespace tofsmith {

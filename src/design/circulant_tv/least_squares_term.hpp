@@ -35,8 +35,6 @@ class PiecewiseConstant {
   int size() const { return static_cast<int>(pieces_.size()); }
   Piece& operator[](int j) { return pieces_[j]; }
   const Piece& operator[](int j) const { return pieces_[j]; }
-  auto begin() const { return pieces_.begin(); }
-  auto end() const { return pieces_.end(); }
   int previous(int j) const { return j > 0 ? j - 1 : size() - 1; }
   int next(int j) const { return j + 1 < size() ? j + 1 : 0; }
   /// First sample after piece j, in [0, N].

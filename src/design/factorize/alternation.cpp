@@ -6,18 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "camera/shared/actual_code.hpp"
 #include "code/shared/on_intervals.hpp"
-#include "core/shared/periodic.hpp"
 #include "core/shared/random.hpp"
 #include "design/circulant_tv/least_squares_term.hpp"
 #include "design/grid_transfer.hpp"
 #include "design/run_lengths.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -25,10 +22,7 @@ namespace tofsmith {
 PairModel::PairModel(const CorrelationTarget& target, const Camera& camera)
     : target_(target),
       camera_(camera),
-      peak_factor_(camera.light.peak_factor),
       shortest_run_(shortest_run_periods(camera)),
-      binary_modulation_(camera.light.binary),
-      binary_demodulation_(camera.sensor.binary),
       transform_(static_cast<int>(target.samples.size())),
       reversed_target_(target.samples.size()) {
   const Eigen::Index size = target.samples.size();
@@ -84,7 +78,7 @@ WaveformPair PairModel::actual(const WaveformPair& pair) const {
 
 double PairModel::residual_rms(const WaveformPair& nominal) const {
   const WaveformPair pair = actual(nominal);
-  if (pair.modulation.mean() <= 0.0) return std::numeric_limits<double>::infinity();
+  if (pair.modulation.mean() <= 0.0) return infinity;
   const CorrelationFunction function =
       camera_.band_limited()
           ? CorrelationFunction(pair.demodulation, pair.modulation, camera_.transfer(4 * samples()))
@@ -102,10 +96,18 @@ double PairModel::residual_rms(const WaveformPair& nominal) const {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+namespace {
+
+struct BinaryProjection {
+  SampledPair pair;
+  double residual_rms;
+};
+
 Eigen::VectorXd binary_demodulation(const Eigen::VectorXd& x, double threshold) {
   return (x.array() > threshold).cast<double>();
 }
 
+/// On where x > threshold * max(x), with unit mean power, or at the peak if lower.
 Eigen::VectorXd binary_modulation(const Eigen::VectorXd& x, double threshold, double peak_factor) {
   Eigen::VectorXd on = (x.array() > threshold * x.maxCoeff()).cast<double>();
   const double duty = on.mean();
@@ -113,6 +115,7 @@ Eigen::VectorXd binary_modulation(const Eigen::VectorXd& x, double threshold, do
   return on;
 }
 
+/// Thresholds each binary arm at the best of 19 levels with the other arm fixed, twice.
 BinaryProjection project_to_binary(const PairModel& model, const SampledPair& relaxed) {
   constexpr int levels = 20;
   BinaryProjection best{relaxed, 0.0};
@@ -145,8 +148,6 @@ BinaryProjection project_to_binary(const PairModel& model, const SampledPair& re
   return best;
 }
 
-namespace {
-
 constexpr double smallest_rms = 1e-4;  // keeps the majorizer's weight positive
 
 Eigen::VectorXd fit(CirculantTvSolver& solver, const CirculantTvProblem& problem,
@@ -165,10 +166,9 @@ AlternationResult alternate(const PairModel& model, SampledPair start,
                             CirculantTvSolver& solver) {
   const double samples = model.samples();
   SampledPair x = std::move(start);
-  AlternationResult result{x, x, model.residual_rms(x.modulation, x.demodulation), {}};
-  result.playable_residual_rms = std::numeric_limits<double>::infinity();
+  AlternationResult result{x, x, infinity, {}};
   double rms = model.residual_rms(x.modulation, x.demodulation);
-  double last_objective = std::numeric_limits<double>::infinity();
+  double last_objective = infinity;
   int without_gain = 0;
 
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {

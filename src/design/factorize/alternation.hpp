@@ -14,24 +14,21 @@
 namespace tofsmith {
 
 /// Model of both arms for waveforms that are constant within cells, and the residual to a target at
-/// the N bins, where the model is exact:
-///   chi[k] = D[k] conj(M[k]) G[k] / N,  G[k] = sum_j H(k + j N) sinc^2((k + j N) / N).
+/// the N bins, where the model is exact (grid_transfer()).
 class PairModel {
  public:
   PairModel(const CorrelationTarget& target, const Camera& camera);
 
   const Camera& camera() const { return camera_; }
   int samples() const { return transform_.samples(); }
-  double peak_factor() const { return peak_factor_; }
-  bool binary_modulation() const { return binary_modulation_; }
-  bool binary_demodulation() const { return binary_demodulation_; }
+  double peak_factor() const { return camera_.light.peak_factor; }
+  bool binary_modulation() const { return camera_.light.binary; }
+  bool binary_demodulation() const { return camera_.sensor.binary; }
   double shortest_run() const { return shortest_run_; }
   const CorrelationTarget& target() const { return target_; }
   /// The target at the bins; reversed in time for the modulation step.
   const Eigen::VectorXd& target_samples() const { return target_.samples; }
   const Eigen::VectorXd& reversed_target_samples() const { return reversed_target_; }
-  /// Returns the gain of both arms at harmonics [0, highest].
-  Eigen::VectorXcd transfer(int highest) const { return camera_.transfer(highest); }
 
   Eigen::VectorXcd spectrum(const Eigen::VectorXd& samples) const;
 
@@ -53,9 +50,7 @@ class PairModel {
 
   CorrelationTarget target_;
   Camera camera_;
-  double peak_factor_;
   double shortest_run_;
-  bool binary_modulation_, binary_demodulation_;
   PeriodicTransform transform_;
   Eigen::VectorXd reversed_target_;
   Eigen::VectorXcd target_spectrum_;
@@ -66,19 +61,6 @@ struct SampledPair {
   Eigen::VectorXd modulation;    // (N), in [0, p], mean <= 1
   Eigen::VectorXd demodulation;  // (N), in [0, 1]
 };
-
-Eigen::VectorXd binary_demodulation(const Eigen::VectorXd& x, double threshold);
-
-/// On where x > threshold * max(x), with unit mean power, or at the peak if lower.
-Eigen::VectorXd binary_modulation(const Eigen::VectorXd& x, double threshold, double peak_factor);
-
-struct BinaryProjection {
-  SampledPair pair;
-  double residual_rms;
-};
-
-/// Thresholds each binary arm at the best of 19 levels with the other arm fixed, twice.
-BinaryProjection project_to_binary(const PairModel& model, const SampledPair& relaxed);
 
 struct AlternationResult {
   SampledPair relaxed;

@@ -181,7 +181,7 @@ class HarmonicFit {
         demodulation_mean_(model.target().demodulation_mean),
         shortest_run_(std::max(fading_run, model.shortest_run())) {
     const int samples = model.samples();
-    const Eigen::VectorXcd response = model.transfer(samples / 2);
+    const Eigen::VectorXcd response = model.camera().transfer(samples / 2);
     highest_ = samples / 2;
     while (highest_ > 8 && std::abs(response[highest_]) < 1e-5) --highest_;
     transfer_ = response.head(highest_ + 1);

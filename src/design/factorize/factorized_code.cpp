@@ -233,10 +233,8 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
   for (const CorrelationTarget& target : targets.measurements)
     factorizations.push_back(
         factorize(target, camera, factorizing_options, of_targets[factorizations.size()]));
-  EvaluateOptions search;
-  search.trials = options.search_trials;
-  search.seed = search_seed(options);
-  search.bounds = false;
+  const EvaluateOptions search{
+      .trials = options.search_trials, .seed = search_seed(options), .bounds = false};
   const PairChoice choice =
       choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
   CodeSet code = assemble(targets.name + "-factorized", factorizations, choice, camera);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 
 #include "core/shared/text_numbers.hpp"
 #include "design/baselines.hpp"
@@ -23,28 +24,13 @@ constexpr std::size_t varied = 6;  ///< codes that are tried with more phases
 constexpr std::size_t finalists = 3;
 constexpr int max_phases = 4;
 
-class Trials {
- public:
-  Trials(const Camera& camera, const DesignOptions& options) : camera_(camera), options_(options) {}
+/// Error of a code in trials [m].
+using TriedError = std::function<double(const SquareCode& code)>;
 
-  double error_m(const SquareCode& code) const {
-    return tried_error_m(to_code_set(code, camera_), camera_, options_);
-  }
-  std::vector<RatedCode> sorted(const std::vector<SquareCode>& codes) const {
-    std::vector<RatedCode> tried;
-    for (const SquareCode& code : codes) tried.push_back({code, error_m(code)});
-    sort(tried);
-    return tried;
-  }
-  static void sort(std::vector<RatedCode>& tried) {
-    std::stable_sort(tried.begin(), tried.end(),
-                     [](const RatedCode& a, const RatedCode& b) { return a.error_m < b.error_m; });
-  }
-
- private:
-  const Camera& camera_;
-  const DesignOptions& options_;
-};
+void sort_by_error(std::vector<RatedCode>& tried) {
+  std::stable_sort(tried.begin(), tried.end(),
+                   [](const RatedCode& a, const RatedCode& b) { return a.error_m < b.error_m; });
+}
 
 bool have_same_frequencies(const SquareCode& a, const SquareCode& b) {
   return std::equal(
@@ -73,23 +59,17 @@ std::vector<SquareCode> with_more_phases(const SquareCode& code, const Frequency
   return all;
 }
 
-void try_more_phases(const Camera& camera, const FrequencyChoice& choice, const Trials& trials,
+void try_more_phases(const Camera& camera, const FrequencyChoice& choice, const TriedError& error_m,
                      std::vector<RatedCode>& tried) {
   const std::size_t count = std::min(varied, tried.size());
   for (std::size_t i = 0; i < count; ++i) {
     const SquareErrorEstimate estimate(camera, tried[i].code.duty, choice.frequencies.front());
     for (const SquareCode& code : with_more_phases(tried[i].code, choice)) {
       const RatedCode split = with_best_split(code, choice, estimate);
-      if (split.error_m < infinity) tried.push_back({split.code, trials.error_m(split.code)});
+      if (split.error_m < infinity) tried.push_back({split.code, error_m(split.code)});
     }
   }
-  Trials::sort(tried);
-}
-
-RatedCode with_tried_split(RatedCode its, const Trials& trials) {
-  for (const double moved : {0.25, 0.1})
-    improve_split(its, moved, [&](const SquareCode& code) { return trials.error_m(code); });
-  return its;
+  sort_by_error(tried);
 }
 
 /// Returns true if a frequency has at most twice the smallest time. A code without it is about as
@@ -102,7 +82,7 @@ bool has_idle_frequency(const SquareCode& code) {
 
 /// Each has different frequencies.
 std::vector<RatedCode> finalists_of(const std::vector<RatedCode>& tried,
-                                    const FrequencyChoice& choice, const Trials& trials) {
+                                    const FrequencyChoice& choice, const TriedError& error_m) {
   std::vector<RatedCode> best;
   for (const RatedCode& its : tried) {
     if (best.size() == finalists || !(its.error_m < infinity)) break;
@@ -110,9 +90,11 @@ std::vector<RatedCode> finalists_of(const std::vector<RatedCode>& tried,
       return have_same_frequencies(its.code, other.code);
     });
     if (!is_new || (!best.empty() && has_idle_frequency(its.code))) continue;
-    best.push_back(choice.time_shares.empty() ? with_tried_split(its, trials) : its);
+    best.push_back(its);
+    if (choice.time_shares.empty())
+      for (const double moved : {0.25, 0.1}) improve_split(best.back(), moved, error_m);
   }
-  Trials::sort(best);
+  sort_by_error(best);
   return best;
 }
 
@@ -206,17 +188,19 @@ void add_frequency_candidates(const Camera& camera, const DesignOptions& options
 
   const FrequencySearch search = search_frequencies(camera, choice, estimated, parts[0]);
   if (search.best.empty()) require(nothing_found(camera, search, choice));
-  std::vector<SquareCode> codes;
-  for (const RatedCode& its : search.best) codes.push_back(its.code);
   std::optional<SquareCode> usual;  // has equal times, which listed times may not contain
   if (choice.time_shares.empty()) usual = rule_of_thumb(choice);
-  if (usual) codes.push_back(*usual);
 
-  const Trials trials(camera, options);
-  std::vector<RatedCode> tried = trials.sorted(codes);
-  try_more_phases(camera, choice, trials, tried);
+  const auto error_m = [&](const SquareCode& code) {
+    return tried_error_m(to_code_set(code, camera), camera, options);
+  };
+  std::vector<RatedCode> tried;
+  for (const RatedCode& its : search.best) tried.push_back({its.code, error_m(its.code)});
+  if (usual) tried.push_back({*usual, error_m(*usual)});
+  sort_by_error(tried);
+  try_more_phases(camera, choice, error_m, tried);
   report(parts[1], 0.5, "frequencies");
-  const std::vector<RatedCode> best = finalists_of(tried, choice, trials);
+  const std::vector<RatedCode> best = finalists_of(tried, choice, error_m);
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   for (const RatedCode& its : best) {

@@ -112,28 +112,21 @@ std::vector<int> FrequencyChoice::exposures_of(int frequencies_of_code) const {
   return {std::lower_bound(exposures.begin(), exposures.end(), needed), exposures.end()};
 }
 
-std::optional<BrokenRule> why_no_frequencies(const Camera& camera, const DesignOptions& options) {
-  if (auto wrong = why_wrong_camera(camera)) return wrong;
-  const FrequencyChoice choice = choice_for(camera, options);
-  if (choice.frequencies.empty())
-    return broken("light.frequencies_hz", list_text(choice.left_out_hz),
-                  fmt::format("must contain multiples of fundamental_frequency_hz = {:.9g}{}",
-                              camera.fundamental_frequency_hz,
-                              camera.sensor.shortest_pulse_s
-                                  ? " with pulses of at least sensor.shortest_pulse_s"
-                                  : ""));
-  if (choice.exposures_of(1).empty())
-    return broken(
-        "sensor.max_exposures", camera.sensor.max_exposures.value_or(default_max_exposures),
-        fmt::format(
-            "must allow {0} exposures, and --exposures, if given, must list a number >= {0}",
-            choice.first_phases));
-  return std::nullopt;
-}
-
 FrequencyChoice frequency_choice(const Camera& camera, const DesignOptions& options) {
-  require(why_no_frequencies(camera, options));
-  return choice_for(camera, options);
+  require(why_wrong_camera(camera));
+  FrequencyChoice choice = choice_for(camera, options);
+  require(!choice.frequencies.empty(), "light.frequencies_hz", list_text(choice.left_out_hz),
+          fmt::format("must contain multiples of fundamental_frequency_hz = {:.9g}{}",
+                      camera.fundamental_frequency_hz,
+                      camera.sensor.shortest_pulse_s
+                          ? " with pulses of at least sensor.shortest_pulse_s"
+                          : ""));
+  require(
+      !choice.exposures_of(1).empty(), "sensor.max_exposures",
+      camera.sensor.max_exposures.value_or(default_max_exposures),
+      fmt::format("must allow {0} exposures, and --exposures, if given, must list a number >= {0}",
+                  choice.first_phases));
+  return choice;
 }
 
 SquareCode with_exposures(SquareCode code, const FrequencyChoice& choice, int exposures) {

@@ -35,9 +35,7 @@ struct FrequencyChoice {
   }
 };
 
-std::optional<BrokenRule> why_no_frequencies(const Camera& camera, const DesignOptions& options);
-
-/// @throws InvalidArgument with why_no_frequencies(), if there is a reason
+/// @throws InvalidArgument if there is no code
 FrequencyChoice frequency_choice(const Camera& camera, const DesignOptions& options);
 
 /// Distributes exposures of equal length evenly; the highest frequencies get the remaining ones.

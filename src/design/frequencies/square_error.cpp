@@ -41,15 +41,24 @@ std::vector<int> phases_in_steps(int phases, int phase_steps) {
   return steps;
 }
 
-double square_level(double duty, double peak_factor) { return std::min(1.0 / duty, peak_factor); }
-
 namespace {
+
+constexpr int phases_tabulated = 512;
+constexpr int points_per_period = 16;  ///< of the highest frequency
+constexpr int highest_odd_harmonic = 9;
+
+/// Power while the light is on, divided by the average power.
+double square_level(double duty, double peak_factor) { return std::min(1.0 / duty, peak_factor); }
 
 Waveform square_light(const SquareTone& tone, double duty, double peak_factor) {
   std::vector<OnInterval> on;
   for (int i = 0; i < tone.frequency; ++i)
     on.push_back({static_cast<double>(i) / tone.frequency, (i + duty) / tone.frequency});
   return Waveform::binary(std::move(on), square_level(duty, peak_factor));
+}
+
+double harmonic_of_square(int h, double duty) {
+  return std::sin(std::numbers::pi * h * duty) / (std::numbers::pi * h);
 }
 
 }  // namespace
@@ -74,23 +83,6 @@ CodeSet to_code_set(const SquareCode& code, const Camera& camera) {
   return camera.sensor.taps == 2 ? one_tap.with_two_buckets() : one_tap;
 }
 
-namespace {
-
-constexpr int phases_tabulated = 512;
-constexpr int points_per_period = 16;  ///< of the highest frequency
-constexpr int highest_odd_harmonic = 9;
-
-double harmonic_of_square(int h, double duty) {
-  return std::sin(std::numbers::pi * h * duty) / (std::numbers::pi * h);
-}
-
-/// Ratio of a measurement to the correlation function of one gate.
-double measurement_gain(const Sensor& sensor) {
-  return sensor.mixes_taps() ? 2.0 * sensor.modulation_contrast : 1.0;
-}
-
-}  // namespace
-
 SquareErrorEstimate::SquareErrorEstimate(const Camera& on, double duty, int highest_frequency)
     : range_m_(on.range_m()) {
   const Camera camera = judged_camera(on);
@@ -109,7 +101,8 @@ SquareErrorEstimate::SquareErrorEstimate(const Camera& on, double duty, int high
                        readouts * time_s * sensor.dark_current_e_per_s});
   }
   const Eigen::VectorXcd transfer = camera.transfer(highest_odd_harmonic * highest_frequency);
-  const double gain = measurement_gain(sensor);
+  // Ratio of a measurement to the correlation function of one gate.
+  const double gain = sensor.mixes_taps() ? 2.0 * sensor.modulation_contrast : 1.0;
   for (int f = 0; f <= highest_frequency; ++f) {
     Spectrum spectrum{.curvature = 0.0, .distance = Eigen::ArrayXd::Zero(phases_tabulated)};
     for (int h = 1; h <= highest_odd_harmonic; h += 2) {

@@ -33,9 +33,6 @@ struct SquareCode {
 /// otherwise equal spacing, rounded to the steps.
 std::vector<int> phases_in_steps(int phases, int phase_steps);
 
-/// Power while the light is on, divided by the average power.
-double square_level(double duty, double peak_factor);
-
 CodeSet to_code_set(const SquareCode& code, const Camera& camera);
 
 /// Closed-form estimate of the depth error of square-wave codes, from means over depth. Frequency f

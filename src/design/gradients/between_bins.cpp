@@ -108,15 +108,6 @@ void BetweenBins::add(std::span<const double> depth_bin, const double* weights,
   }
 }
 
-template <typename Visit>
-void BetweenBins::fold(int points, const Visit& visit) const {
-  for (int n = 0; n < shares_.size(); ++n) {
-    const int k = n % points;
-    if (2 * k <= points) visit(n, k, false);
-    if (2 * k >= points || (k == 0 && n > 0)) visit(n, (points - k) % points, true);
-  }
-}
-
 Eigen::MatrixXd BetweenBins::fine_table(const Functions& functions, int finer) const {
   const int points = finer * samples_;
   Eigen::MatrixXd fine(points, functions.count());
@@ -135,12 +126,15 @@ Eigen::MatrixXd BetweenBins::fine_table(const Functions& functions, int finer) c
   Eigen::VectorXd values;
   for (int f = 0; f < functions.count(); ++f) {
     spectrum.setZero();
-    fold(points, [&](int n, int k, bool negative) {
+    for (int n = 0; n < shares_.size(); ++n) {
+      const int k = n % points;
       const std::size_t at = functions.harmonics.at(n, f);
       const std::complex<double> harmonic(functions.harmonics.real[at],
                                           functions.harmonics.imag[at]);
-      spectrum[k] += points / times(n) * (negative ? std::conj(harmonic) : harmonic);
-    });
+      if (2 * k <= points) spectrum[k] += points / times(n) * harmonic;
+      if (2 * k >= points || (k == 0 && n > 0))
+        spectrum[(points - k) % points] += points / times(n) * std::conj(harmonic);
+    }
     transform.inverse(spectrum, values);
     fine.col(f) = values;
   }

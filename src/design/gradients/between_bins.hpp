@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -76,8 +75,6 @@ class BetweenBins {
     double fraction;
   };
   Chord chord_at(double depth_bin) const;
-  template <typename Visit>
-  void fold(int points, const Visit& visit) const;
 
   int samples_;
   bool straight_;

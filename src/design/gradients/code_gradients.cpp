@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "camera/shared/ambient_leak.hpp"
@@ -30,10 +29,14 @@ struct CodeGradients::Steps {
   int exposures;
 };
 
-/// At most 64 groups of whole blocks, for any number of threads.
-std::int64_t pixels_in_a_group(std::int64_t pixels);
-
 namespace {
+
+/// At most 64 groups of whole blocks, for any number of threads.
+std::int64_t pixels_in_a_group(std::int64_t pixels) {
+  constexpr std::int64_t groups = 64;
+  const std::int64_t even = (pixels + groups - 1) / groups;
+  return std::max<std::int64_t>(1, (even + harmonic_block - 1) / harmonic_block) * harmonic_block;
+}
 
 template <typename Value>
 class PixelDecoder {
@@ -55,7 +58,7 @@ class PixelDecoder {
   void pull_back(std::size_t pixel, double weight, CurveGradientOf<Value>& gradient,
                  Value* by_electrons) {
     const auto by_answer = static_cast<Value>(weight);
-    decoder_.expected_error(*curve_, electrons_of(pixel), question_of(pixel), by_answer, gradient,
+    decoder_.expected_error(*curve_, electrons_of(pixel), question_of(pixel), by_answer, &gradient,
                             by_electrons);
     for (int r = 0; r < curve_->measurements; ++r) by_electrons[r] *= by_answer;
   }
@@ -102,11 +105,6 @@ std::vector<double> answers_of(const DecodingCurveOf<Value>& curve,
   return answers;
 }
 
-void add_table(MeasurementTable& sum, const MeasurementTable& part) {
-  sum.correlation += part.correlation;
-  sum.ambient_gain += part.ambient_gain;
-}
-
 }  // namespace
 
 template <typename Value>
@@ -146,7 +144,10 @@ DecodedGradient<Value> CodeGradients::pull_back_decoded(const MeasurementTable& 
     by_curve.pull_back(steps_->sampled, table, curve,
                        parts[static_cast<std::size_t>(range.begin / in_a_group)]);
   });
-  for (const MeasurementTable& part : parts) add_table(gradient.table, part);
+  for (const MeasurementTable& part : parts) {
+    gradient.table.correlation += part.correlation;
+    gradient.table.ambient_gain += part.ambient_gain;
+  }
   return gradient;
 }
 
@@ -289,12 +290,6 @@ void evaluate_blocks(const BetweenBins& between, const BetweenBins::Functions& f
 }
 
 }  // namespace
-
-std::int64_t pixels_in_a_group(std::int64_t pixels) {
-  constexpr std::int64_t groups = 64;
-  const std::int64_t even = (pixels + groups - 1) / groups;
-  return std::max<std::int64_t>(1, (even + harmonic_block - 1) / harmonic_block) * harmonic_block;
-}
 
 CodeGradients::Steps::Steps(const Camera& its, int samples, int exposures)
     : camera(without_what_has_no_gradient(its, samples, exposures)),

@@ -105,8 +105,8 @@ SoftTwoReturnDecoder* DepthErrorLoss::two_return_decoder(const TrialBatch& batch
   return &*two_returns_;
 }
 
-double DepthErrorLoss::sum_errors(const OperatingPoint& point, const TrialBatch& batch,
-                                  double sharpness, double weight, bool with_gradient) {
+double DepthErrorLoss::soft_error(const OperatingPoint& point, const TrialBatch& batch,
+                                  double sharpness, std::optional<double> weight) {
   const double per_trial = 1.0 / static_cast<double>(batch.trials.size());
   SoftTwoReturnDecoder* const pairs = two_return_decoder(batch);
   double sum = 0.0;
@@ -116,30 +116,20 @@ double DepthErrorLoss::sum_errors(const OperatingPoint& point, const TrialBatch&
     const SoftQuestion question{batch.trials[t].depth_periods * table_.samples(), sharpness,
                                 circular_};
     const double trial_weight = batch.trials[t].weight * per_trial;
-    if (!with_gradient) {
+    if (!weight) {
       sum += trial_weight * (pairs ? pairs->expected_error(electrons, question)
                                    : decoder_.expected_error(curve_, electrons, question));
       continue;
     }
-    const double scale = weight * trial_weight;
+    const double scale = *weight * trial_weight;
     const auto by_error = static_cast<float>(scale);
     sum += trial_weight *
            (pairs ? pairs->expected_error(electrons, question, by_error, by_electrons_.data())
-                  : decoder_.expected_error(curve_, electrons, question, by_error, curve_gradient_,
+                  : decoder_.expected_error(curve_, electrons, question, by_error, &curve_gradient_,
                                             by_electrons_.data()));
     pull_back_reading(point, batch.normals_of(t), scale);
   }
   return sum;
-}
-
-double DepthErrorLoss::soft_error(const OperatingPoint& point, const TrialBatch& batch,
-                                  double sharpness) {
-  return sum_errors(point, batch, sharpness, 0.0, false);
-}
-
-double DepthErrorLoss::soft_error(const OperatingPoint& point, const TrialBatch& batch,
-                                  double sharpness, double weight) {
-  return sum_errors(point, batch, sharpness, weight, true);
 }
 
 void DepthErrorLoss::decode(const OperatingPoint& point, const TrialBatch& batch,
@@ -162,13 +152,11 @@ MeasurementTable DepthErrorLoss::gradient(Eigen::VectorXd* by_exposure_s) const 
   return result;
 }
 
-namespace {
-constexpr double worst_case_sharpness = 20.0;
-}
-
-StochasticGradient::StochasticGradient(const DesignProblem& problem, int trials,
-                                       RandomStream random)
-    : problem_(&problem), trials_(trials), noise_(random) {
+StochasticGradient::StochasticGradient(const DesignProblem& problem, int trials, std::uint64_t seed,
+                                       std::uint64_t work_item)
+    : problem_(&problem),
+      trials_(trials),
+      noise_(RandomStream(seed, work_item, 0xffffffffu)) {  // differs from all step numbers
   for (const CameraVariant& variant : problem.variants)
     average_error_.emplace_back(variant.levels.size(), 0.0);
 }
@@ -182,6 +170,7 @@ double StochasticGradient::mean_log(std::size_t variant) const {
 }
 
 double StochasticGradient::weight(std::size_t variant, std::size_t point) const {
+  constexpr double worst_case_sharpness = 20.0;
   double total = 0.0;
   for (std::size_t v = 0; v < average_error_.size(); ++v)
     total += std::exp(worst_case_sharpness * (mean_log(v) - mean_log(variant)));

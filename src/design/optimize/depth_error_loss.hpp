@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -31,10 +32,9 @@ class DepthErrorLoss {
 
   /// Returns the mean error of the soft decoder [bin].
   /// @param sharpness  of decisions, per log likelihood, divided by the mean variance [1/e^2]
-  double soft_error(const OperatingPoint& point, const TrialBatch& batch, double sharpness);
-  /// Returns the same error and adds `weight` times its gradient at fixed sharpness.
+  /// @param weight  if given, adds `weight` times the gradient of the error at fixed sharpness
   double soft_error(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
-                    double weight);
+                    std::optional<double> weight = {});
   /// Decodes each trial by the hard decoder [bin].
   void decode(const OperatingPoint& point, const TrialBatch& batch,
               std::vector<double>& decoded_bin);
@@ -64,8 +64,6 @@ class DepthErrorLoss {
   void pull_back_reading(const OperatingPoint& point, const double* normals, double weight);
   /// Null if the batch is decoded as one return.
   SoftTwoReturnDecoder* two_return_decoder(const TrialBatch& batch);
-  double sum_errors(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
-                    double weight, bool with_gradient);
 
   const SampledCamera* camera_;
   MeasurementTable table_;
@@ -87,7 +85,8 @@ class DepthErrorLoss {
 class StochasticGradient {
  public:
   /// @param trials  per call, in total
-  StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
+  StochasticGradient(const DesignProblem& problem, int trials, std::uint64_t seed,
+                     std::uint64_t work_item);
 
   /// @param decision_sharpness  per log likelihood
   SampledCode at(const SampledCode& code, double decision_sharpness, RandomStream& random);

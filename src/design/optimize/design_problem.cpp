@@ -4,14 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "camera/shared/listed_exposures.hpp"
 #include "design/run_lengths.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/error.hpp"
-#include "tofsmith/design/optimize.hpp"
 
 namespace tofsmith {
 

@@ -16,12 +16,6 @@ namespace tofsmith {
 
 namespace {
 
-Eigen::VectorXd cell_values(const WaveformSpace& space, const Eigen::VectorXd& samples) {
-  Eigen::VectorXd cells(space.cells);
-  for (int c = 0; c < space.cells; ++c) cells[c] = samples[c * space.repeat];
-  return cells;
-}
-
 std::vector<int> ranked(const Eigen::VectorXd& cells) {
   std::vector<int> order(static_cast<std::size_t>(cells.size()));
   std::iota(order.begin(), order.end(), 0);
@@ -37,17 +31,14 @@ SwitchedLabels first_of(const std::vector<int>& order, int count) {
 }
 
 SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int e) {
-  const Eigen::VectorXd first = cell_values(space, code.demodulation.col(e * space.taps));
   if (space.equal_duties) {
+    const Eigen::VectorXd first =
+        first_samples(code.demodulation.col(e * space.taps), space.repeat);
     SwitchedLabels halves = first_of(ranked(first), space.cells / 2);
     for (int& label : halves.label) label = 1 - label;  // class 0 is the first bucket
     return halves;
   }
-  Eigen::MatrixXd shares(space.cells, space.classes());
-  for (int t = 0; t < space.taps; ++t)
-    shares.col(t) = cell_values(space, code.demodulation.col(e * space.taps + t));
-  if (space.drain)
-    shares.col(space.taps) = 1.0 - shares.leftCols(space.taps).rowwise().sum().array();
+  const Eigen::ArrayXXd shares = class_shares(space, code, e);
   std::vector<int> cells(static_cast<std::size_t>(space.cells));
   for (int c = 0; c < space.cells; ++c) {
     Eigen::Index largest = 0;
@@ -87,7 +78,7 @@ SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code) {
   const int min_on =
       std::max(1, static_cast<int>(std::ceil(space.cells / space.peak_factor - 1e-9)));
   for (int e = 0; e < space.exposures; ++e) {
-    const Eigen::VectorXd cells = cell_values(space, code.modulation.col(e));
+    const Eigen::VectorXd cells = first_samples(code.modulation.col(e), space.repeat);
     const std::vector<int> order = ranked(cells);
     result.light.push_back(first_of(order, nearest_count(cells, order, min_on)));
   }
@@ -101,8 +92,6 @@ using EdgeGradient = std::vector<std::vector<std::vector<double>>>;
 Eigen::Index sample_at(double time, int samples) {
   return std::min<Eigen::Index>(samples - 1, static_cast<Eigen::Index>(wrap(time, 1.0) * samples));
 }
-
-std::size_t before(std::size_t i, std::size_t count) { return (i + count - 1) % count; }
 
 /// A delay of an edge by t changes its sample by N t times the level; a longer pulse lowers the
 /// level.
@@ -129,8 +118,8 @@ std::vector<double> pull_back_gates(const WaveformSpace& space, const SwitchedLa
   std::vector<double> result;
   for (std::size_t i = 0; i < gates.runs(); ++i) {
     const Eigen::Index n = sample_at(gates.at[i], space.samples());
-    result.push_back(space.samples() * (by_class(gates.label[before(i, gates.runs())], n) -
-                                        by_class(gates.label[i], n)));
+    const int before = gates.label[(i + gates.runs() - 1) % gates.runs()];
+    result.push_back(space.samples() * (by_class(before, n) - by_class(gates.label[i], n)));
   }
   return result;
 }
@@ -188,8 +177,6 @@ void step_edges(SwitchedLabels& labels, const std::vector<double>& gradient, dou
 }
 
 constexpr double decision_sharpness = 3.0;
-// Stream key that differs from all step numbers.
-constexpr std::uint32_t noise_store_key = 0xffffffffu;
 
 /// Steps of the logits of exposure shares.
 class ShareSteps {
@@ -237,8 +224,7 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
   const double shortest = std::max(min_run, problem.shortest_run_periods);
   Eigen::VectorXd& shares = code.sampled.shares;
   if (space.equal_duties && code.light.empty() && shares.size() == 0) return code;
-  StochasticGradient gradient(problem, trials_per_step,
-                              RandomStream(seed, work_item, noise_store_key));
+  StochasticGradient gradient(problem, trials_per_step, seed, work_item);
   std::vector<Adam> light(code.light.size()), gates(code.gates.size());
   std::optional<ShareSteps> share_steps;
   if (shares.size() > 0) share_steps.emplace(shares, 0.03);
@@ -261,8 +247,7 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
 
 Eigen::VectorXd descend_shares(const DesignProblem& problem, SampledCode code, int steps,
                                int trials_per_step, std::uint64_t seed, std::uint64_t work_item) {
-  StochasticGradient gradient(problem, trials_per_step,
-                              RandomStream(seed, work_item, noise_store_key));
+  StochasticGradient gradient(problem, trials_per_step, seed, work_item);
   ShareSteps share_steps(code.shares, 0.1);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(code.shares.size());
   for (int step = 0; step < steps; ++step) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -148,12 +147,6 @@ std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool&
   return candidates;
 }
 
-}  // namespace
-
-void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"); }
-
-namespace {
-
 enum class ExposureTimes { as_in_camera, free };
 
 std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposures,
@@ -226,9 +219,8 @@ std::vector<Candidate> search_analog(std::span<const Camera> variants, int expos
   starts.insert(starts.end(), also.begin(), also.end());
   std::vector<Candidate> analog =
       search_codes(variants, exposures, options, starts, times, parts[1]);
-  std::vector<Candidate> candidates = std::move(switched);
-  std::move(analog.begin(), analog.end(), std::back_inserter(candidates));
-  return candidates;
+  std::move(analog.begin(), analog.end(), std::back_inserter(switched));
+  return switched;
 }
 
 std::vector<Candidate> search(std::span<const Camera> variants, int exposures,
@@ -237,7 +229,6 @@ std::vector<Candidate> search(std::span<const Camera> variants, int exposures,
   options.validate();
   require(!variants.empty(), "variants", variants.size(), "must contain at least one camera");
   const Camera& camera = variants.front();
-  const bool is_signed = camera.sensor.is_signed();
   std::vector<CodeSet> starts;
   for (const CodeSet& code : also)
     starts.push_back(code.is_signed() ? code.buckets_of_signed() : code);
@@ -245,7 +236,7 @@ std::vector<Candidate> search(std::span<const Camera> variants, int exposures,
   std::vector<Candidate> candidates =
       switches ? search_codes(variants, exposures, options, starts, times, progress)
                : search_analog(variants, exposures, options, starts, times, progress);
-  if (is_signed)
+  if (camera.sensor.is_signed())
     for (Candidate& c : candidates) {
       c.code = c.code.signed_of_buckets();
       std::vector<MeasurementReport> of_first_buckets;
@@ -257,7 +248,19 @@ std::vector<Candidate> search(std::span<const Camera> variants, int exposures,
   return candidates;
 }
 
+/// With DesignOptions::robust, includes other bandwidths. Gradients do not model other
+/// perturbations.
+std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& options) {
+  std::vector<Camera> variants{camera};
+  if (options.robust)
+    for (PerturbedCamera& perturbed : perturbations(camera, {.peak = 0.0, .tap_mismatch = 0.0}))
+      variants.push_back(std::move(perturbed.camera));
+  return variants;
+}
+
 }  // namespace
+
+void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"); }
 
 std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
                                 const OptimizeOptions& options, std::span<const CodeSet> also,
@@ -279,20 +282,6 @@ std::vector<Candidate> optimize(const Camera& camera, int exposures, const Optim
                                 std::span<const CodeSet> also, const Progress& progress) {
   return optimize(std::span<const Camera>(&camera, 1), exposures, options, also, progress);
 }
-
-namespace {
-
-/// With DesignOptions::robust, includes other bandwidths. Gradients do not model other
-/// perturbations.
-std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& options) {
-  std::vector<Camera> variants{camera};
-  if (options.robust)
-    for (PerturbedCamera& perturbed : perturbations(camera, {.peak = 0.0, .tap_mismatch = 0.0}))
-      variants.push_back(std::move(perturbed.camera));
-  return variants;
-}
-
-}  // namespace
 
 std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options,
                                        const Contenders& atlas) {

@@ -7,8 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "design/optimize/depth_error_loss.hpp"
-#include "design/optimize/optimize_starts.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
@@ -164,6 +162,8 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
   return best_of_rotations(smoothed_over_rotations(worst));
 }
 
+namespace {
+
 WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
                            int rotation_bin) {
   const int cells = (rotation_bin + space.repeat / 2) / space.repeat % space.cells;
@@ -171,14 +171,6 @@ WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters&
   for (int c = 0; c < space.cells; ++c)
     result.modulation.row((c + cells) % space.cells) = parameters.modulation.row(c);
   return result;
-}
-
-namespace {
-
-Sharpness sharpness_at(const DescentSchedule& schedule, double done) {
-  const double along = std::max(0.0, (done - schedule.soft_share) / (1.0 - schedule.soft_share));
-  return {std::pow(schedule.final_sharpness.modulation, along),
-          std::pow(schedule.final_sharpness.demodulation, along)};
 }
 
 constexpr double softness = 1.2;
@@ -208,98 +200,22 @@ std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
   return combine_keys(phase, static_cast<std::uint64_t>(item));
 }
 
-}  // namespace
-
-int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options) {
-  constexpr int min_trials = 100;
-  const std::size_t levels = problem.variants.front().levels.size();
-  return std::max(min_trials, options.pool_trials / static_cast<int>(levels));
-}
-
-void Adam::step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate) {
-  if (mean_.size() == 0) {
-    mean_ = Eigen::ArrayXXd::Zero(values.rows(), values.cols());
-    square_ = mean_;
-  }
-  mean_power_ *= mean_decay_;
-  square_power_ *= square_decay_;
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    const double g = std::isfinite(gradient(i)) ? gradient(i) : 0.0;
-    mean_(i) = mean_decay_ * mean_(i) + (1.0 - mean_decay_) * g;
-    square_(i) = square_decay_ * square_(i) + (1.0 - square_decay_) * g * g;
-    const double deviation = std::sqrt(square_(i) / (1.0 - square_power_));
-    values(i) -= rate * (mean_(i) / (1.0 - mean_power_)) / (deviation + 1e-12);
-  }
-}
-
-namespace {
-// Stream key that differs from all step numbers.
-constexpr std::uint32_t noise_in_store = 0xffffffffu;
-}  // namespace
-
-WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
-                           const DescentSchedule& schedule, std::uint64_t seed,
-                           std::uint64_t work_item, SharedProgress* progress) {
-  // Limits; sharpened waveforms are nearly binary well inside.
-  const double largest_modulation = schedule.final_sharpness.modulation > 1.0 ? 4.0 : 8.0;
-  const double largest_demodulation = schedule.final_sharpness.demodulation > 1.0 ? 3.0 : 6.0;
-  StochasticGradient objective(problem, schedule.trials_per_step,
-                               RandomStream(seed, work_item, noise_in_store));
-  Adam modulation, demodulation, shares;
-  for (int step = 0; step < schedule.steps; ++step) {
-    if (progress) progress->add();
-    const double done = static_cast<double>(step) / schedule.steps;
-    const Sharpness sharpness = sharpness_at(schedule, done);
-    const double decision_sharpness =
-        schedule.decision_sharpness_begin *
-        std::pow(schedule.decision_sharpness_end / schedule.decision_sharpness_begin, done);
-    RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
-    const SampledCode code = render(problem.space, parameters, sharpness);
-    const WaveformParameters gradient =
-        pull_back(problem.space, code, sharpness, objective.at(code, decision_sharpness, random));
-    // Sharper waveforms change more per parameter.
-    const double rate = schedule.rate * (done < 0.7 ? 1.0 : std::max(0.05, (1.0 - done) / 0.3));
-    modulation.step(parameters.modulation, gradient.modulation,
-                    rate / std::sqrt(sharpness.modulation));
-    demodulation.step(parameters.demodulation, gradient.demodulation,
-                      rate / std::sqrt(sharpness.demodulation));
-    if (parameters.shares.size() > 0)
-      shares.step(parameters.shares, gradient.shares, shares_per_rate * rate);
-    parameters.modulation =
-        parameters.modulation.cwiseMax(-largest_modulation).cwiseMin(largest_modulation);
-    parameters.demodulation =
-        parameters.demodulation.cwiseMax(-largest_demodulation).cwiseMin(largest_demodulation);
-  }
-  return parameters;
-}
-
+/// Allows a descent to change saturated parameters.
 WaveformParameters softened(WaveformParameters parameters, double limit) {
   for (Eigen::MatrixXd* values : {&parameters.modulation, &parameters.demodulation})
     *values = values->cwiseMax(-limit).cwiseMin(limit);
   return parameters;
 }
 
-std::vector<std::size_t> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
-                                        std::ptrdiff_t of_each) {
-  std::vector<std::size_t> best;
-  for (std::size_t i = 0; i < pool.size() && best.size() < count; ++i) {
-    const auto from_same = std::count_if(best.begin(), best.end(), [&](std::size_t other) {
-      return pool[other].start_index == pool[i].start_index;
-    });
-    if (from_same < of_each) best.push_back(i);
-  }
-  return best;
-}
-
-namespace {
-
 PoolEntry softened(PoolEntry entry) {
   entry.parameters = softened(std::move(entry.parameters), softness);
   return entry;
 }
 
-}  // namespace
-
+/// Jumps out of a local minimum: softens the best entry of one of the best three starts, replaces
+/// one pair of waveforms (by a random pair or from another entry) or rotates its gates against its
+/// light, and adds noise. `pool` is sorted and not empty.
+/// @return parameters and name of the start
 PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
               RandomStream& random) {
   const WaveformSpace& space = problem.space;
@@ -327,6 +243,79 @@ PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
   for (Eigen::MatrixXd* values : {&next.parameters.modulation, &next.parameters.demodulation})
     for (double& value : values->reshaped()) value += noise * random.normal();
   return next;
+}
+
+}  // namespace
+
+int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options) {
+  constexpr int min_trials = 100;
+  const std::size_t levels = problem.variants.front().levels.size();
+  return std::max(min_trials, options.pool_trials / static_cast<int>(levels));
+}
+
+void Adam::step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate) {
+  if (mean_.size() == 0) {
+    mean_ = Eigen::ArrayXXd::Zero(values.rows(), values.cols());
+    square_ = mean_;
+  }
+  mean_power_ *= mean_decay_;
+  square_power_ *= square_decay_;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double g = std::isfinite(gradient(i)) ? gradient(i) : 0.0;
+    mean_(i) = mean_decay_ * mean_(i) + (1.0 - mean_decay_) * g;
+    square_(i) = square_decay_ * square_(i) + (1.0 - square_decay_) * g * g;
+    const double deviation = std::sqrt(square_(i) / (1.0 - square_power_));
+    values(i) -= rate * (mean_(i) / (1.0 - mean_power_)) / (deviation + 1e-12);
+  }
+}
+
+WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
+                           const DescentSchedule& schedule, std::uint64_t seed,
+                           std::uint64_t work_item, SharedProgress* progress) {
+  constexpr double soft_share = 0.4;                // of the steps, before waveforms sharpen
+  constexpr double final_decision_sharpness = 3.0;  // per log likelihood; 1 at first
+  // Limits; sharpened waveforms are nearly binary well inside.
+  const double largest_modulation = schedule.final_sharpness.modulation > 1.0 ? 4.0 : 8.0;
+  const double largest_demodulation = schedule.final_sharpness.demodulation > 1.0 ? 3.0 : 6.0;
+  StochasticGradient objective(problem, schedule.trials_per_step, seed, work_item);
+  Adam modulation, demodulation, shares;
+  for (int step = 0; step < schedule.steps; ++step) {
+    if (progress) progress->add();
+    const double done = static_cast<double>(step) / schedule.steps;
+    const double along = std::max(0.0, (done - soft_share) / (1.0 - soft_share));
+    const Sharpness sharpness{std::pow(schedule.final_sharpness.modulation, along),
+                              std::pow(schedule.final_sharpness.demodulation, along)};
+    const double decision_sharpness = std::pow(final_decision_sharpness, done);
+    RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
+    const SampledCode code = render(problem.space, parameters, sharpness);
+    const WaveformParameters gradient =
+        pull_back(problem.space, code, sharpness, objective.at(code, decision_sharpness, random));
+    // Sharper waveforms change more per parameter.
+    const double rate = schedule.rate * (done < 0.7 ? 1.0 : std::max(0.05, (1.0 - done) / 0.3));
+    modulation.step(parameters.modulation, gradient.modulation,
+                    rate / std::sqrt(sharpness.modulation));
+    demodulation.step(parameters.demodulation, gradient.demodulation,
+                      rate / std::sqrt(sharpness.demodulation));
+    if (parameters.shares.size() > 0)
+      shares.step(parameters.shares, gradient.shares, shares_per_rate * rate);
+    parameters.modulation =
+        parameters.modulation.cwiseMax(-largest_modulation).cwiseMin(largest_modulation);
+    parameters.demodulation =
+        parameters.demodulation.cwiseMax(-largest_demodulation).cwiseMin(largest_demodulation);
+  }
+  return parameters;
+}
+
+std::vector<std::size_t> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
+                                        std::ptrdiff_t of_each) {
+  std::vector<std::size_t> best;
+  for (std::size_t i = 0; i < pool.size() && best.size() < count; ++i) {
+    const auto from_same = std::count_if(best.begin(), best.end(), [&](std::size_t other) {
+      return pool[other].start_index == pool[i].start_index;
+    });
+    if (from_same < of_each) best.push_back(i);
+  }
+  return best;
 }
 
 Sharpness final_sharpness(const DesignProblem& problem) {
@@ -380,12 +369,12 @@ void OptimizePool::record(double log_error_bin) {
 /// Results are at the best rotation.
 void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
                                std::uint64_t phase, std::size_t first_item,
-                               SharedProgress& progress) const {
-  DescentSchedule schedule;
-  schedule.steps = steps;
-  schedule.rate = rate;
-  schedule.trials_per_step = options_.trials_per_step;
-  schedule.final_sharpness = final_sharpness(*problem_);
+                               SharedProgress& progress) {
+  steps_ += std::ssize(entries) * steps;
+  const DescentSchedule schedule{.steps = steps,
+                                 .trials_per_step = options_.trials_per_step,
+                                 .rate = rate,
+                                 .final_sharpness = final_sharpness(*problem_)};
   const double contending =
       entries_.empty() ? infinity : entries_.front().score.log_error_bin + contending_log_ratio;
   parallel_for(std::ssize(entries), [&](std::int64_t i) {
@@ -430,7 +419,6 @@ void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) 
       entries.push_back({std::move(start.parameters), {}, std::move(start.name), i});
     }
     descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first, shared);
-    steps_ += std::ssize(entries) * options_.steps_per_start;
     keep(std::move(entries));
   }
   starts_done_ = count;
@@ -453,7 +441,6 @@ void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
                                                      : hop(*problem_, entries_, random));
     }
     descend_all(entries, options_.steps_per_hop, 0.08, Phase::hopping, first, shared);
-    steps_ += std::ssize(entries) * options_.steps_per_hop;
     without_gain += static_cast<int>(entries.size());
     const double best_before = entries_.front().score.log_error_bin;
     keep(std::move(entries));
@@ -477,7 +464,6 @@ std::vector<PoolEntry> OptimizePool::with_free_shares(const PoolStage& stage,
   SharedProgress shared(progress, static_cast<double>(entries.size()) * options_.steps_per_hop,
                         "exposure times");
   descend_all(entries, options_.steps_per_hop, 0.08, Phase::splitting, splits_done_, shared);
-  steps_ += std::ssize(entries) * options_.steps_per_hop;
   splits_done_ += entries.size();
   return entries;
 }
@@ -492,7 +478,6 @@ void OptimizePool::refine(const PoolStage& stage, const Progress& progress) {
   SharedProgress shared(progress, static_cast<double>(entries.size()) * stage.refinement_steps,
                         "refinement");
   descend_all(entries, stage.refinement_steps, 0.03, Phase::refining, refinements_done_, shared);
-  steps_ += std::ssize(entries) * stage.refinement_steps;
   refinements_done_ += entries.size();
   keep(std::move(entries));
 }

@@ -41,9 +41,6 @@ class CodeJudge {
   std::vector<TrialBatch> rotating_;  // uniform depths, for the rotation
 };
 
-WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
-                           int rotation_bin);
-
 /// Stochastic gradient descent with steps scaled by running means of the gradient and its square.
 /// @see Kingma and Ba, "Adam: a method for stochastic optimization", ICLR 2015
 class Adam {
@@ -63,9 +60,6 @@ struct DescentSchedule {
   int trials_per_step = 360;  ///< over all light levels
   double rate = 0.08;         ///< of the parameters, while waveforms are soft
   Sharpness final_sharpness{6.0, 8.0};
-  double soft_share = 0.4;  ///< of the steps, before waveforms sharpen
-  double decision_sharpness_begin = 1.0,
-         decision_sharpness_end = 3.0;  ///< sharpness of decisions per log likelihood
 };
 
 /// Returns parameters with a lower error; uses random streams (seed, work item, step).
@@ -91,16 +85,6 @@ struct PoolEntry {
 /// start. Without this limit, most entries are from the best start.
 std::vector<std::size_t> best_of_starts(const std::vector<PoolEntry>& pool, std::size_t count,
                                         std::ptrdiff_t of_each);
-
-/// Jumps out of a local minimum: softens the best entry of one of the best three starts, replaces
-/// one pair of waveforms (by a random pair or from another entry) or rotates its gates against its
-/// light, and adds noise. `pool` is sorted and not empty.
-/// @return parameters and name of the start
-PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
-              RandomStream& random);
-
-/// Allows a descent to change saturated parameters.
-WaveformParameters softened(WaveformParameters parameters, double limit);
 
 int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options);
 
@@ -137,7 +121,7 @@ class OptimizePool {
 
  private:
   void descend_all(std::vector<PoolEntry>& entries, int steps, double rate, std::uint64_t phase,
-                   std::size_t first_item, SharedProgress& progress) const;
+                   std::size_t first_item, SharedProgress& progress);
   void keep(std::vector<PoolEntry> entries);
 
   const DesignProblem* problem_;

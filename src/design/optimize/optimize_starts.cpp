@@ -6,13 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
-#include "core/shared/random.hpp"
-#include "design/optimize/design_problem.hpp"
-#include "tofsmith/code/code_set.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 namespace {

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "camera/shared/ambient_leak.hpp"
 #include "core/shared/whole_vectors.hpp"
@@ -229,8 +228,6 @@ MeasurementTable zeros_like(const MeasurementTable& table) {
 
 namespace {
 
-int padded_stride(int samples) { return whole_vectors(samples + 1) + widest_vector; }
-
 /// Zero if ambient light is not estimated.
 Eigen::VectorXd ambient_direction(const SampledCamera& camera, const MeasurementTable& table,
                                   const Eigen::VectorXd& relative_exposure) {
@@ -247,7 +244,7 @@ DecodingCurveOf<Value>::DecodingCurveOf(const SampledCamera& camera, const Measu
                                         const Eigen::VectorXd& times_s)
     : samples(table.samples()),
       measurements(table.measurements()),
-      stride(padded_stride(samples)),
+      stride(whole_vectors(samples + 1) + widest_vector),
       exposure_s(times_s) {
   const Eigen::VectorXd relative = exposure_s / exposure_s.mean();
   const Eigen::VectorXd direction = ambient_direction(camera, table, relative);
@@ -274,12 +271,6 @@ CurveGradientOf<Value>::CurveGradientOf(const DecodingCurveOf<Value>& curve)
       squares(curve.squares.size(), Value{0}),
       next_squares(curve.squares.size(), Value{0}),
       products(curve.squares.size(), Value{0}) {}
-
-template <typename Value>
-void CurveGradientOf<Value>::clear() {
-  for (Aligned<Value>* values : {&points, &squares, &next_squares, &products})
-    std::fill(values->begin(), values->end(), Value{0});
-}
 
 template <typename Value>
 void CurveGradientOf<Value>::pull_back(const SampledCamera& camera, const MeasurementTable& table,

@@ -146,7 +146,6 @@ using DecodingCurve = DecodingCurveOf<float>;
 template <typename Value>
 struct CurveGradientOf {
   explicit CurveGradientOf(const DecodingCurveOf<Value>& curve);
-  void clear();
   /// Adds to `gradient` and, unless null, to the gradient w.r.t. the integration times (R).
   void pull_back(const SampledCamera& camera, const MeasurementTable& table,
                  const DecodingCurveOf<Value>& curve, MeasurementTable& gradient,

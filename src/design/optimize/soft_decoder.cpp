@@ -256,11 +256,10 @@ HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const
   }
 }
 
-/// @param gradient  null: only the error
 template <typename Value>
-Value expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
-                     const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,
-                     typename SoftDecoderOf<Value>::Scratch& scratch, Value* by_electrons) {
+Value soft_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
+                 const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,
+                 typename SoftDecoderOf<Value>::Scratch& scratch, Value* by_electrons) {
   match_points(curve, electrons, scratch);
   const Value largest = score_chords(curve, scratch);
   Value sums[2];
@@ -284,13 +283,13 @@ double decode_doubles(const DecodingCurveOf<double>& curve, const double* electr
 float error_of_floats(const DecodingCurve& curve, const float* electrons,
                       const SoftQuestion& question, float weight, CurveGradient* gradient,
                       SoftDecoder::Scratch& scratch, float* by_electrons) {
-  return expected_error(curve, electrons, question, weight, gradient, scratch, by_electrons);
+  return soft_error(curve, electrons, question, weight, gradient, scratch, by_electrons);
 }
 double error_of_doubles(const DecodingCurveOf<double>& curve, const double* electrons,
                         const SoftQuestion& question, double weight,
                         CurveGradientOf<double>* gradient, SoftDecoderOf<double>::Scratch& scratch,
                         double* by_electrons) {
-  return expected_error(curve, electrons, question, weight, gradient, scratch, by_electrons);
+  return soft_error(curve, electrons, question, weight, gradient, scratch, by_electrons);
 }
 
 }  // namespace
@@ -305,22 +304,6 @@ HWY_EXPORT(decode_floats);
 HWY_EXPORT(decode_doubles);
 HWY_EXPORT(error_of_floats);
 HWY_EXPORT(error_of_doubles);
-
-namespace {
-
-template <typename Value>
-Value soft_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
-                 const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,
-                 typename SoftDecoderOf<Value>::Scratch& scratch, Value* by_electrons) {
-  if constexpr (std::is_same_v<Value, float>)
-    return HWY_DYNAMIC_DISPATCH(error_of_floats)(curve, electrons, question, weight, gradient,
-                                                 scratch, by_electrons);
-  else
-    return HWY_DYNAMIC_DISPATCH(error_of_doubles)(curve, electrons, question, weight, gradient,
-                                                  scratch, by_electrons);
-}
-
-}  // namespace
 
 template <typename Value>
 SoftDecoderOf<Value>::Scratch::Scratch(int stride) {
@@ -342,16 +325,15 @@ double SoftDecoderOf<Value>::decode(const DecodingCurveOf<Value>& curve, const V
 
 template <typename Value>
 double SoftDecoderOf<Value>::expected_error(const DecodingCurveOf<Value>& curve,
-                                            const Value* electrons, const SoftQuestion& question) {
-  return soft_error<Value>(curve, electrons, question, Value{0}, nullptr, scratch_, nullptr);
-}
-
-template <typename Value>
-double SoftDecoderOf<Value>::expected_error(const DecodingCurveOf<Value>& curve,
                                             const Value* electrons, const SoftQuestion& question,
-                                            Value weight, CurveGradientOf<Value>& gradient,
+                                            Value weight, CurveGradientOf<Value>* gradient,
                                             Value* by_electrons) {
-  return soft_error<Value>(curve, electrons, question, weight, &gradient, scratch_, by_electrons);
+  if constexpr (std::is_same_v<Value, float>)
+    return HWY_DYNAMIC_DISPATCH(error_of_floats)(curve, electrons, question, weight, gradient,
+                                                 scratch_, by_electrons);
+  else
+    return HWY_DYNAMIC_DISPATCH(error_of_doubles)(curve, electrons, question, weight, gradient,
+                                                  scratch_, by_electrons);
 }
 
 template class SoftDecoderOf<float>;

@@ -24,13 +24,12 @@ class SoftDecoderOf {
   /// Returns the best position on the two chords at the best bin [bin], for electrons (R).
   double decode(const DecodingCurveOf<Value>& curve, const Value* electrons);
 
-  /// Returns the expected error [bin]. The second overload adds `weight` times the gradient w.r.t.
-  /// the curve, and writes the unweighted gradient w.r.t. the electrons (R).
+  /// Returns the expected error [bin].
+  /// @param gradient  unless null, adds `weight` times the gradient w.r.t. the curve, and writes
+  ///   the unweighted gradient w.r.t. the electrons (R)
   double expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
-                        const SoftQuestion& question);
-  double expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
-                        const SoftQuestion& question, Value weight,
-                        CurveGradientOf<Value>& gradient, Value* by_electrons);
+                        const SoftQuestion& question, Value weight = 0,
+                        CurveGradientOf<Value>* gradient = nullptr, Value* by_electrons = nullptr);
 
   struct Scratch {
     explicit Scratch(int stride);

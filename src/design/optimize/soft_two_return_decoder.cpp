@@ -203,13 +203,10 @@ SoftTwoReturnDecoder::Shares SoftTwoReturnDecoder::weigh(const float* electrons,
   return {total, error_total / total};
 }
 
-double SoftTwoReturnDecoder::expected_error(const float* electrons, const SoftQuestion& question) {
-  return weigh(electrons, question).expected_error;
-}
-
 double SoftTwoReturnDecoder::expected_error(const float* electrons, const SoftQuestion& question,
                                             float weight, float* by_electrons) {
   const auto [total, expected] = weigh(electrons, question);
+  if (!by_electrons) return expected;
   const auto by_share = static_cast<float>(question.sharpness / total);
   for (std::size_t j = 0; j < pairs_.row.size(); ++j)
     pairs_.row[j] = by_share * (pairs_.error[j] - static_cast<float>(expected));

@@ -28,11 +28,10 @@ class SoftTwoReturnDecoder {
   double decode(const float* electrons);
   /// Returns the expected circular |error| of the direct return [bins of the curve]; probabilities
   /// of pairs are exp(sharpness S_jk) / sum.
-  double expected_error(const float* electrons, const SoftQuestion& question);
-  /// Returns the same error, accumulates `weight` times the gradient for pull_back(), and writes
-  /// the unweighted gradient w.r.t. the electrons (R).
-  double expected_error(const float* electrons, const SoftQuestion& question, float weight,
-                        float* by_electrons);
+  /// @param by_electrons  unless null, accumulates `weight` times the gradient for pull_back(), and
+  ///   writes the unweighted gradient w.r.t. the electrons (R)
+  double expected_error(const float* electrons, const SoftQuestion& question, float weight = 0.0f,
+                        float* by_electrons = nullptr);
   void pull_back(CurveGradient& gradient) const;
 
   /// One value per bin, over two periods, or one per pair, (delays, stride).

@@ -37,7 +37,7 @@ double weight_in_mixture(double depth_periods, const DepthPrior& depths) {
 
 }  // namespace
 
-NoiseStore::NoiseStore(RandomStream& random) : normals_(std::size_t{1} << 15) {
+NoiseStore::NoiseStore(RandomStream random) : normals_(std::size_t{1} << 15) {
   for (double& normal : normals_) normal = random.normal();
 }
 

@@ -23,7 +23,7 @@ struct DepthTrial {
 /// Drawing windows is cheap, but windows overlap: for averaged gradients only.
 class NoiseStore {
  public:
-  explicit NoiseStore(RandomStream& random);
+  explicit NoiseStore(RandomStream random);
   std::vector<double> window(std::size_t count, RandomStream& random) const;
 
  private:

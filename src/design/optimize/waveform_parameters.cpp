@@ -44,12 +44,6 @@ Eigen::VectorXd on_samples(const Eigen::ArrayXd& cells, int repeat) {
   return samples;
 }
 
-Eigen::ArrayXd first_samples(const Eigen::VectorXd& samples, int repeat) {
-  Eigen::ArrayXd cells(samples.size() / repeat);
-  for (Eigen::Index c = 0; c < cells.size(); ++c) cells[c] = samples[c * repeat];
-  return cells;
-}
-
 Eigen::ArrayXd sum_in_cells(const Eigen::VectorXd& samples, int repeat) {
   Eigen::ArrayXd cells(samples.size() / repeat);
   for (Eigen::Index c = 0; c < cells.size(); ++c)
@@ -76,6 +70,18 @@ Eigen::ArrayXXd softmax(const Eigen::ArrayXXd& logits) {
   return shares.colwise() / sum;
 }
 
+Waveform light_waveform(const SwitchedLabels& light) {
+  return light.waveform(1, 1.0 / light.share(1));
+}
+
+}  // namespace
+
+Eigen::ArrayXd first_samples(const Eigen::VectorXd& samples, int repeat) {
+  Eigen::ArrayXd cells(samples.size() / repeat);
+  for (Eigen::Index c = 0; c < cells.size(); ++c) cells[c] = samples[c * repeat];
+  return cells;
+}
+
 Eigen::ArrayXXd class_shares(const WaveformSpace& space, const SampledCode& code, int e) {
   Eigen::ArrayXXd shares(space.cells, space.classes());
   for (int t = 0; t < space.taps; ++t)
@@ -83,8 +89,6 @@ Eigen::ArrayXXd class_shares(const WaveformSpace& space, const SampledCode& code
   if (space.drain) shares.col(space.taps) = 1.0 - shares.leftCols(space.taps).rowwise().sum();
   return shares;
 }
-
-}  // namespace
 
 SampledCode render(const WaveformSpace& space, const WaveformParameters& parameters,
                    const Sharpness& sharpness) {
@@ -205,10 +209,6 @@ Waveform SwitchedLabels::waveform(int wanted, double level) const {
   return Waveform::binary(within_period(std::move(on)), level);
 }
 
-Waveform light_waveform(const SwitchedLabels& light) {
-  return light.waveform(1, 1.0 / light.share(1));
-}
-
 SampledCode sampled_on(const WaveformSpace& space, const SwitchedCode& code) {
   SampledCode result = code.sampled;
   for (std::size_t e = 0; e < code.light.size(); ++e)
@@ -221,26 +221,20 @@ SampledCode sampled_on(const WaveformSpace& space, const SwitchedCode& code) {
   return result;
 }
 
-namespace {
-
-Waveform resampled(const Eigen::VectorXd& values, int samples) {
-  return Waveform::sampled(Waveform::sampled(values).cell_averages(samples));
-}
-
-}  // namespace
-
 CodeSet code_set(const std::string& name, const WaveformSpace& space, const SwitchedCode& code,
                  int samples) {
+  const auto resampled = [&](const Eigen::VectorXd& values) {
+    return Waveform::sampled(Waveform::sampled(values).cell_averages(samples));
+  };
   std::vector<Waveform> modulation, demodulation;
   for (int e = 0; e < space.exposures; ++e) {
     modulation.push_back(code.light.empty()
-                             ? resampled(code.sampled.modulation.col(e), samples)
+                             ? resampled(code.sampled.modulation.col(e))
                              : light_waveform(code.light[static_cast<std::size_t>(e)]));
     for (int tap = 0; tap < space.taps; ++tap)
-      demodulation.push_back(
-          code.gates.empty()
-              ? resampled(code.sampled.demodulation.col(e * space.taps + tap), samples)
-              : code.gates[static_cast<std::size_t>(e)].waveform(tap, 1.0));
+      demodulation.push_back(code.gates.empty()
+                                 ? resampled(code.sampled.demodulation.col(e * space.taps + tap))
+                                 : code.gates[static_cast<std::size_t>(e)].waveform(tap, 1.0));
   }
   const Eigen::VectorXd& shares = code.sampled.shares;
   return CodeSet::create(name, samples, space.taps, std::move(modulation), std::move(demodulation))

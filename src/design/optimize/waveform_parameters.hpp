@@ -78,7 +78,10 @@ struct SwitchedCode {
   SampledCode sampled;
 };
 
-Waveform light_waveform(const SwitchedLabels& light);
+/// Returns the first sample of each cell.
+Eigen::ArrayXd first_samples(const Eigen::VectorXd& samples, int repeat);
+/// Returns the shares of each destination of charge in an exposure (cells, classes).
+Eigen::ArrayXXd class_shares(const WaveformSpace& space, const SampledCode& code, int e);
 
 SampledCode sampled_on(const WaveformSpace& space, const SwitchedCode& code);
 
