@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "program_directory.hpp"
+#include "python_module.hpp"
 #include "session.hpp"
 #include "tofsmith/core/error.hpp"
 

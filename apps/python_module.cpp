@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "python_module.hpp"
-#include "program_directory.hpp"
 
 #include <unistd.h>
 

@@ -8,6 +8,12 @@
 
 namespace tofsmith::apps {
 
+/// Directory of this program; empty if the system does not report it.
+inline std::filesystem::path program_directory() {
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+}
+
 /// Replaces this process with `python3 -m MODULE ARGUMENTS`. The package tofsmith is searched for
 /// next to this program (build, installation, wheel), then where Python itself searches; if it is
 /// missing, Python reports what to install. The environment variable TOFSMITH_PYTHON selects

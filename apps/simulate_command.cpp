@@ -19,7 +19,6 @@
 #include "scene_source.hpp"
 #include "session.hpp"
 #include "simulate_light.hpp"
-#include "sweep_shard.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"

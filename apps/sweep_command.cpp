@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "number_checks.hpp"
 #include "session.hpp"
-#include "sweep_shard.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/report/figure.hpp"

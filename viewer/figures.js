@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the figures of a document: lines, maps, images, curves and point clouds.
 
-import {unpacked} from './arrays.js';
 import {inline} from './blocks.js';
 import {colourBar, scaleOf} from './colour_bar.js';
 import {cssColour} from './colours.js';
@@ -13,6 +12,27 @@ import {rangeOf, shortText} from './numbers.js';
 import {Picture} from './picture.js';
 import {legendOf, LinePlot, paddedRange} from './plot.js';
 import {Space, SpaceView} from './space.js';
+
+// Arrays of documents are plain lists, or packed by src/report/figure_json.cpp.
+
+async function inflated(base64) {
+  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** Decodes a list, with null for NaN, or a packed array {count, row, low, step, words}. */
+async function unpacked(array) {
+  if (Array.isArray(array)) return Float64Array.from(array, (value) => value ?? NaN);
+  const {count, row, low, step} = array, planes = await inflated(array.words);
+  const values = new Float32Array(count);
+  for (let i = 0, word = 0; i < count; ++i) {
+    if (i % row === 0) word = 0;
+    word = (word + planes[i] + 256 * planes[count + i]) & 0xffff;
+    values[i] = word === 0 ? NaN : (word - 1 + low) * step;
+  }
+  return values;
+}
 
 // Palette of documents. The theme replaces each colour by a light or dark shade.
 const palette = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000'];

@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "bindings.hpp"
-#include "lens.hpp"
 #include "options.hpp"
 #include "progress.hpp"
+#include "reports.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 

@@ -28,7 +28,7 @@ inline std::vector<std::uint8_t> bytes_of_base64(const std::string& text) {
   return bytes;
 }
 
-/// Returns the values of a packed array, like viewer/arrays.js.
+/// Returns the values of a packed array, like unpacked() of viewer/figures.js.
 inline std::vector<float> unpacked(const nlohmann::json& array) {
   const auto count = array.at("count").get<std::size_t>(), row = array.at("row").get<std::size_t>();
   const std::vector<std::uint8_t> packed = bytes_of_base64(array.at("words"));

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Workers that answer calls: several share the calls of the page, a separate one runs designs.
+// Workers that answer calls: several share the calls of the page, a separate one runs designs. Calls
+// during interaction run one at a time, the newest one next.
 
 /** Error of a call that was cancelled or replaced by a newer call of the same lane. */
 export class Outdated extends Error {}
@@ -189,4 +190,64 @@ function withArrays(answer, arrays) {
     if (value && typeof value === 'object' && value.array in arrays)
       filled[key] = {values: arrays[value.array], shape: value.shape};
   return filled;
+}
+
+/**
+ * Returns a function that runs `work`, never concurrently. Of waiting calls with the same first
+ * argument, only the newest is kept.
+ */
+export function newestOnly(work) {
+  const waiting = new Map();
+  let isBusy = false;
+  return async (...values) => {
+    waiting.set(values[0], values);
+    if (isBusy) return;
+    isBusy = true;
+    try {
+      while (waiting.size) {
+        const [first, next] = waiting.entries().next().value;
+        waiting.delete(first);
+        await work(...next);
+      }
+    } finally {
+      isBusy = false;
+    }
+  };
+}
+
+/**
+ * Renders a coarse image first and then refines it. Each request is a list of steps, i.e. functions
+ * that return promises. The first `whole` steps are always completed, so that there is an image
+ * even if requests arrive quickly. A newer request cancels the other steps.
+ */
+export class Sharpener {
+  #next = null;
+  #isBusy = false;
+
+  /** @param whole  number of steps to complete; @param stop  cancels the current step */
+  constructor(whole, stop, onProblem) {
+    Object.assign(this, {whole, stop, onProblem, place: 0});
+  }
+
+  /** Replaces the steps. */
+  async request(steps) {
+    this.#next = steps;
+    if (this.#isBusy) {
+      if (this.place >= this.whole) this.stop();
+      return;
+    }
+    this.#isBusy = true;
+    while (this.#next) {
+      const now = this.#next;
+      this.#next = null;
+      try {
+        for (this.place = 0; this.place < now.length && (this.place < this.whole || !this.#next);
+             ++this.place)
+          await now[this.place]();
+      } catch (error) {
+        if (!(error instanceof Outdated)) this.onProblem(error);
+      }
+    }
+    this.#isBusy = false;
+  }
 }

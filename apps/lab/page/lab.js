@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Model of the page: its state, the camera and codes derived from it, and listeners.
 
-import {Outdated, Refused} from './engine.js';
-import {newestOnly, Sharpener} from './pace.js';
+import {newestOnly, Outdated, Refused, Sharpener} from './engine.js';
 import {maxCodes} from './store.js';
 
 const quickTrials = 200, middleTrials = 2000;

@@ -11,10 +11,9 @@ import {ErrorsView} from './errors.js';
 import {FieldPanel} from './fields.js';
 import {Files} from './files.js';
 import {fileName, Lab} from './lab.js';
-import {linkOf, stateOf} from './link.js';
 import {shortText} from '../../../viewer/numbers.js';
 import {SceneView} from './scene.js';
-import {firstState, Store} from './store.js';
+import {firstState, linkOf, stateOf, Store} from './store.js';
 import {startTheme} from '../../../viewer/theme.js';
 
 const patienceSeconds = 60;

@@ -6,7 +6,7 @@ import {divergingColour, sequentialColour} from '../../../viewer/colours.js';
 import {byId, element, showProblem} from '../../../viewer/dom.js';
 import {askedCode} from './lab.js';
 import {lengthText, rangeOf, shortText} from '../../../viewer/numbers.js';
-import {Sharpener} from './pace.js';
+import {Sharpener} from './engine.js';
 import {Picture} from '../../../viewer/picture.js';
 
 const widths = [80, 160, 240, 320], quickWidth = 80;
