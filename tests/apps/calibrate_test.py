@@ -58,6 +58,9 @@ class Calibrate(BenchRecordsTest):
             command = line.removeprefix("next: tofsmith ").replace("RAW", "raw.npy").split()
             self.do(*command, "--force")
             self.assertLess(self.errors_m("depth.npy", truth).max(), 5e-3, (taps, difference))
+            document = self.do_json("calibrate", "correlation", "sweep.npy", "--shifts",
+                                    "shifts.txt", "--shift-unit", "bin", "--camera", "camera.toml")
+            self.assertIn(f"values span {document['swing']:.5g} raw numbers", text)
 
     def test_the_camera_file_marks_or_omits_values_that_nobody_gave(self):
         self.record()

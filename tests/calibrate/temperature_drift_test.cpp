@@ -97,6 +97,37 @@ TEST(TemperatureDrift, ReportsTemperaturesInKelvin) {
   EXPECT_THAT(Warming{}.calibrate(kelvin).notes, Contains(HasSubstr("kelvin")));
 }
 
+TEST(TemperatureDrift, ACalibratedCameraMeasuresDepthAsAtTheReference) {
+  const Warming bench{.offset_m_per_c = 2e-3, .signal_per_c = -5e-3};
+  const CodeSet code = build_family("sinusoid-k4", phase_camera());
+  Camera camera = with_temperature(phase_camera(), bench.calibrate(), 20.0);
+  const RawFrames raw = bench.capture();
+  const int last = raw.frames - 1;
+  const auto decoded = [&](const DecodingTable& table) { return Decoder(table).decode(raw, last); };
+  const auto of_code = [&] { return make_decoding_table(ForwardModel(code, camera), camera); };
+  const DepthImage cold = decoded(of_code());
+  camera.temperature->now_c = bench.temperature_c().back();
+  const DepthImage warm = decoded(of_code());
+  // A table measured at the reference temperature gives the same.
+  camera.temperature->now_c.reset();
+  MeasuredTable measured;
+  measured.correlation = of_code().correlation;
+  measured.differences = true;
+  camera.temperature->now_c = bench.temperature_c().back();
+  const DepthImage by_table = decoded(make_decoding_table(measured, camera));
+  const double drift_m = 2e-3 * 27.0, gain = std::exp(-5e-3 * 27.0);
+  for (std::size_t i = 0; i < cold.depth_m.pixels.size(); ++i) {
+    const auto at = [i](const Image<float>& image) { return static_cast<double>(image.pixels[i]); };
+    const auto apart_m = [&](const DepthImage& a, const DepthImage& b) {
+      return std::remainder(at(a.depth_m) - at(b.depth_m), camera.range_m());
+    };
+    EXPECT_NEAR(apart_m(cold, warm), drift_m, 0.05 * drift_m) << i;
+    EXPECT_NEAR(at(cold.signal_e_per_s) / at(warm.signal_e_per_s), gain, 0.02) << i;
+    EXPECT_NEAR(apart_m(by_table, warm), 0.0, 1e-4) << i;
+    EXPECT_NEAR(at(by_table.signal_e_per_s) / at(warm.signal_e_per_s), 1.0, 1e-3) << i;
+  }
+}
+
 TEST(TemperatureDrift, RejectsImplausibleFactors) {
   Camera camera = phase_camera();
   camera.temperature = Temperature{.signal_per_c = 1.0, .now_c = 60.0};

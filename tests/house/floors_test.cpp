@@ -82,7 +82,7 @@ std::string included_folder(const std::string& line) {
 std::vector<std::string> upward_includes(const SourceFile& file) {
   const std::string here = folder_of(file.path);
   if (!may_include.contains(here))
-    return {violation(file, 0, here + "/ stands on no floor; give it one in floors_test.cpp")};
+    return {violation(file, 0, here + "/ belongs to no layer; add it to floors_test.cpp")};
   std::vector<std::string> found;
   for (std::size_t i = 0; i < file.lines.size(); ++i) {
     const std::string there = included_folder(file.lines[i]);
@@ -179,7 +179,8 @@ TEST(Rooms, SharedHeadersAreUsedByAnotherLayer) {
     }
   for (const SourceFile& file : files)
     if (file.path.find("/shared/") != std::string::npos) {
-      EXPECT_TRUE(borrowed.contains(file.path)) << file.path << " serves its own floor alone";
+      EXPECT_TRUE(borrowed.contains(file.path))
+          << file.path << " is shared, but only its own folder uses it";
     }
 }
 

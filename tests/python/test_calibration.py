@@ -178,7 +178,14 @@ def test_drift_with_two_temperatures_is_that_of_the_command(both, cli):
     assert found.hysteresis_m == pair(said["hysteresis_m"])
     assert camera.at_temperature(44, 33).temperature.sensor.now_c == 33
     alone = ts.calibrate_temperature(frames, light, "sinusoid-k4", base)
-    assert alone.sensor is None and alone.camera(base, reference_c=20).temperature.sensor is None
+    one = alone.camera(base, reference_c=20)
+    assert alone.sensor is None and one.temperature.sensor is None
+    assert one.at_temperature(44).temperature.now_c == 44
+    printed(cli, both[0], "temperature", "sweep.npy", "--temperatures", "degrees.csv",
+            "--light-column", "light_c", "--code", "sinusoid-k4", "--camera", "base.toml",
+            "--reference-c", "20", "-o", "one.toml")
+    one.write(both[1] / "one.toml")
+    same_camera(both, "one.toml")
     with pytest.raises(ValueError, match="no .temperature."):
         base.at_temperature(30.0)
     with pytest.raises(ValueError, match="no .temperature.sensor."):

@@ -57,6 +57,10 @@ def test_figure(name, output):
     assert f"<h2>{name}: {html.escape(paper.items[name])}</h2>" in (output / "index.html").read_text()
 
 
+def test_every_figure_has_expected_verdicts():
+    assert set(VERDICTS) == set(paper.items)
+
+
 def test_finished_figures_are_kept_unless_options_differ(tmp_path):
     kept = []
 

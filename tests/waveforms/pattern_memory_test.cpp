@@ -73,6 +73,10 @@ TEST(PatternMemory, ReadsBackExactlyAtEveryWidth) {
       EXPECT_EQ(back.digits, language.syntax.radix == 2 ? bits : (bits + 3) / 4) << language.file;
       EXPECT_THAT(text, HasSubstr(fmt::format(fmt::runtime(language.width), bits, bits - 1)));
     }
+    EXPECT_THAT(intel_mif(memory), testing::AllOf(HasSubstr("DEPTH = 32;"), HasSubstr("\n10 : "),
+                                                  HasSubstr("\n31 : ")));
+    EXPECT_THAT(vhdl_package(memory),
+                testing::AllOf(HasSubstr("(0 to 31)"), HasSubstr("    31 => \"")));
   }
 }
 
