@@ -18,7 +18,7 @@
 #include "asked_figures.hpp"
 #include "decode_frame.hpp"
 #include "in_turns.hpp"
-#include "simulate/trial_errors.hpp"
+#include "simulate/pixel_trials.hpp"
 #include "tofsmith/core/build_info.hpp"
 
 namespace tofsmith::benchmarks {

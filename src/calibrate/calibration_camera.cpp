@@ -7,7 +7,7 @@
 #include "core/shared/enum_words.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/correction_arrays.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"

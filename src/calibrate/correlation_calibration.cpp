@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "calibrate/harmonic_fit.hpp"
-#include "calibrate/pixel_alignment.hpp"
 #include "calibrate/sweep_pixels.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"

@@ -9,7 +9,7 @@
 #include "calibrate/sweep_pixels.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/sample_times.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/raw_frames.hpp"

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "calibrate/harmonic_fit.hpp"
-#include "calibrate/pixel_alignment.hpp"
+#include "calibrate/sweep_pixels.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -10,7 +10,7 @@
 #include <complex>
 
 #include "calibrate/harmonic_fit.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/decode/depth_image.hpp"

@@ -13,6 +13,7 @@
 
 #include "core/build_commit.hpp"
 #include "core/shared/text_numbers.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

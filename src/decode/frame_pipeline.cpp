@@ -9,6 +9,7 @@
 
 #include "core/shared/pixel_runs.hpp"
 #include "core/shared/working_threads.hpp"
+#include "decode/shared/frame_accumulator.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/parallel.hpp"
 

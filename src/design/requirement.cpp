@@ -155,7 +155,7 @@ class CodePool {
   std::deque<CodeSet> codes_;  // keeps pointers valid
 };
 
-/// Geometric mean over the operating points [m]; 0: no bound.
+/// Geometric mean over the operating points [m]; infinity if no number of exposures is possible.
 double bound_m(const Camera& given) {
   const Camera camera = judged_camera(given);
   const std::vector<OperatingPoint> points = camera.operating.points();

@@ -10,6 +10,7 @@
 
 #include "core/shared/working_threads.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
+#include "decode/shared/frame_accumulator.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "gpu/device_raw.hpp"
 #include "gpu/device_time_filter.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "io/arrays/shared/array_matrix.hpp"
-#include "io/documents/lens_calibration.hpp"
+#include "io/documents/shared/lens_document.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"

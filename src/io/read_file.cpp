@@ -3,14 +3,18 @@
 #include "io/shared/read_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <span>
 
+#include "core/shared/text_numbers.hpp"
 #include "io/input_file.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith {
+
 namespace {
 
 [[noreturn]] void refuse_size(const std::filesystem::path& path, std::string_view found,
@@ -78,6 +82,33 @@ std::string read_text_file(const std::filesystem::path& path, std::uint64_t max_
 std::vector<std::byte> read_binary_file(const std::filesystem::path& path,
                                         std::uint64_t max_bytes) {
   return read_whole_file<std::vector<std::byte>>(path, max_bytes);
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = lower_case(c);
+  return extension;
+}
+
+std::string known_extension(const std::filesystem::path& path,
+                            std::initializer_list<std::string_view> known) {
+  std::string extension = lower_extension(path);
+  if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
+  throw IoError(
+      path.string(),
+      fmt::format("found {}; expected one of {}",
+                  extension.empty() ? "no extension" : fmt::format("the extension '{}'", extension),
+                  fmt::join(known, ", ")));
+}
+
+std::string file_name_of(std::string_view name) {
+  std::string file;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_' || (c == '.' && !file.empty());
+    file += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return file;
 }
 
 }  // namespace tofsmith

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "report/design_front.hpp"
+#include "report/design_sections.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "report/error_sections.hpp"
-#include "report/scene_section.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/report/code_figures.hpp"
 

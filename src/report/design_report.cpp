@@ -7,9 +7,7 @@
 #include <array>
 #include <limits>
 
-#include "report/design_front.hpp"
-#include "report/error_sections.hpp"
-#include "report/scene_section.hpp"
+#include "report/design_sections.hpp"
 #include "report/shared/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/design/design.hpp"

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "report/error_sections.hpp"
-#include "report/scene_section.hpp"
+#include "report/design_sections.hpp"
 #include "report/shared/table_of_rows.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/scene_result.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/error_sections.hpp"
+#include "report/design_sections.hpp"
 #include "report/shared/table_of_rows.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/code_figures.hpp"

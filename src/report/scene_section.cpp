@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "report/scene_section.hpp"
+#include "report/design_sections.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "report/error_sections.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
 

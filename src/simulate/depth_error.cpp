@@ -13,9 +13,9 @@
 
 #include "camera/shared/actual_code.hpp"
 #include "simulate/depth_trials.hpp"
+#include "simulate/pixel_trials.hpp"
 #include "simulate/shared/camera_bounds.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
-#include "simulate/trial_errors.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 

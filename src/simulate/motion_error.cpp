@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "simulate/depth_cells.hpp"
 #include "simulate/pixel_trials.hpp"
 
 namespace tofsmith {

@@ -28,7 +28,7 @@ struct TrialFrame {
   std::vector<double> true_m;
 };
 
-/// @param options  with a number of trials and a seed
+/// @param options  EvaluateOptions or MultipathErrorOptions: gives trials and seed
 /// @param add  adds the light of a trial: (random, direct depth, work, sum)
 template <typename Options, typename AddLight>
 TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera, const Options& options,

@@ -11,6 +11,7 @@
 
 #include "camera/shared/depth_prior.hpp"
 #include "core/shared/random.hpp"
+#include "simulate/depth_trials.hpp"
 #include "simulate/pixel_capture.hpp"
 #include "simulate/shared/depth_information.hpp"
 #include "tofsmith/camera/camera.hpp"
@@ -24,6 +25,29 @@
 #include "tofsmith/simulate/wrong_shares.hpp"
 
 namespace tofsmith {
+
+/// Calls use(cell, mass, by_depth, part) for the cells of the range in which depth can be decoded:
+/// with the probability of the cell, the derivative of the measurements with respect to depth, and
+/// its component orthogonal to the derivatives with respect to signal and ambient light.
+/// @param camera  the camera of `model`
+/// @param cells  from default_cells_per_bin()
+template <typename Use>
+void for_each_depth_cell(const ForwardModel& model, const Camera& camera, Eigen::Index cells,
+                         const Use& use) {
+  Eigen::MatrixXd signal, slope;
+  middles_and_slopes(
+      model.correlation_table(static_cast<int>(2 * cells)) * model.exposure_s().asDiagonal(),
+      signal, slope);
+  const Eigen::VectorXd ambient =
+      model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera));
+  const Eigen::VectorXd masses = DepthPrior(camera).masses(cells);
+  for (Eigen::Index j = 0; j < cells; ++j) {
+    const Eigen::VectorXd by_depth = slope.row(j);
+    const DepthPart<Eigen::VectorXd> part(by_depth, signal.row(j), ambient);
+    if (part.length > 0.0)
+      use(j, masses.size() > 0 ? masses[j] : 1.0 / static_cast<double>(cells), by_depth, part);
+  }
+}
 
 /// Depths that count as correct in a trial.
 using TrueDepths = std::array<double, 2>;
@@ -104,5 +128,35 @@ std::vector<PixelSums> PixelTrials::run(std::size_t first_stream, const Draw& dr
   report(progress, 1.0, what);
   return results;
 }
+
+/// Sums over pairs of trials in neighbouring slices, for means and mean squares with variances
+/// (collapsed strata).
+struct ErrorSums {
+  TileSums sums;
+  std::int64_t trials = 0;
+
+  void merge(const ErrorSums& other);
+  Estimate linear(double bin_m) const;
+  Estimate circular(double bin_m) const;
+  Estimate linear_rms(double bin_m) const;
+  Estimate circular_rms(double bin_m) const;
+  Estimate outlier_rate() const;
+};
+
+/// Outliers are circular errors beyond the threshold.
+std::vector<ErrorSums> sum_errors(const DepthTrials& trials, std::span<const TrialRound> rounds,
+                                  double threshold_bin, const Progress& progress);
+
+template <typename Point>
+DepthErrorMean mean_over_points(const std::vector<Point>& points, Estimate Point::*error) {
+  std::vector<Estimate> errors;
+  for (const Point& point : points) errors.push_back(point.*error);
+  return {geometric_mean_of(errors), mean_of(errors)};
+}
+
+/// Returns depth errors without bounds.
+/// @param code, camera  of the trials
+DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, const Camera& camera,
+                              const EvaluateOptions& options, const Progress& progress);
 
 }  // namespace tofsmith

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "code/shared/on_intervals.hpp"
-#include "simulate/trial_errors.hpp"
+#include "simulate/pixel_trials.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 

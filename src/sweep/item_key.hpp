@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,8 +13,24 @@
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
+
+/// Axes with a common index.
+using AxisDigit = std::vector<std::size_t>;
+
+/// Digits form a number whose last digit varies fastest.
+struct AxisBlock {
+  std::vector<AxisDigit> digits;
+  std::int64_t size = 1;  ///< at most 2^62
+};
+
+/// Blocks within a list advance together; the lists form a product whose last one varies fastest.
+std::vector<std::vector<AxisBlock>> axis_blocks(const SweepSpec& spec);
+
+/// Returns "axis samples" or "group optics", for errors.
+std::string name_of(const SweepSpec& spec, const AxisBlock& block);
 
 /// Returns the first positions of all distinct keys, sorted by key as in the store.
 std::vector<std::int64_t> key_order(std::span<const std::string> keys);

@@ -14,6 +14,14 @@
 
 namespace tofsmith {
 
+/// Returns the name of a network file system, such as "NFS", from its number in statfs(); "" for
+/// local file systems. Write-ahead logs fail on network file systems, because they require shared
+/// memory.
+std::string network_file_system(std::uint32_t magic);
+
+/// `path` need not exist.
+std::string network_file_system_at(const std::filesystem::path& path);
+
 class SqliteStatement;
 
 /// A connection to an SQLite database; not thread-safe. Members throw IoError with the file and the

@@ -10,7 +10,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "io/documents/shared/result_json.hpp"
+#include "io/documents/shared/document_text.hpp"
 #include "sweep/item_key.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/csv.hpp"

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "core/shared/hash.hpp"
-#include "sweep/file_system.hpp"
 #include "sweep/store_file.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 #include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/line_cursor.hpp"
 #include "io/text/shared/table_reader.hpp"
-#include "sweep/axis_blocks.hpp"
+#include "io/text/shared/text_lines.hpp"
+#include "sweep/item_key.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/number_table.hpp"
@@ -17,6 +18,17 @@
 
 namespace tofsmith {
 namespace {
+
+/// Returns a number, or else a string.
+SettingValue toml_value_of_line(const std::string& line, std::string place) {
+  double number = 0.0;
+  const char* const end = line.data() + line.size();
+  const auto [stopped, error] = std::from_chars(line.data(), end, number);
+  if (error == std::errc() && stopped == end && std::isfinite(number))
+    return {line, line, number, std::move(place)};
+  if (line == "true" || line == "false") return {line, line, {}, std::move(place)};
+  return toml_value_of(toml::value<std::string>(line), std::move(place));
+}
 
 constexpr std::int64_t max_axis_values = 1'000'000;
 

@@ -18,7 +18,7 @@
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/line_cursor.hpp"
+#include "io/text/shared/text_lines.hpp"
 #include "sweep/item_key.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

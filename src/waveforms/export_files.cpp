@@ -11,11 +11,8 @@
 #include "tofsmith/version.hpp"
 #include "tofsmith/waveforms/upload_script.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
-#include "waveforms/generator_scripts.hpp"
-#include "waveforms/keysight.hpp"
+#include "waveforms/generator_formats.hpp"
 #include "waveforms/pattern_memory.hpp"
-#include "waveforms/siglent.hpp"
-#include "waveforms/tektronix.hpp"
 
 namespace tofsmith {
 

@@ -6,7 +6,7 @@
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
-#include "waveforms/generator_scripts.hpp"
+#include "waveforms/generator_formats.hpp"
 
 namespace tofsmith {
 

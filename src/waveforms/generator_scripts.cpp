@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "waveforms/generator_scripts.hpp"
+#include "waveforms/generator_formats.hpp"
 
 #include <fmt/format.h>
 #include <sha2.h>

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "waveforms/keysight.hpp"
+#include "waveforms/generator_formats.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "tofsmith/core/error.hpp"
-#include "waveforms/generator_scripts.hpp"
 
 namespace tofsmith {
 

@@ -13,7 +13,7 @@
 #include "core/shared/bits.hpp"
 #include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
-#include "waveforms/generator_scripts.hpp"
+#include "waveforms/generator_formats.hpp"
 
 namespace tofsmith {
 

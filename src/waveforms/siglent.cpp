@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "waveforms/siglent.hpp"
+#include "waveforms/generator_formats.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 
 #include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
-#include "waveforms/generator_scripts.hpp"
 
 namespace tofsmith {
 

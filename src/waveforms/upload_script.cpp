@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "tofsmith/core/error.hpp"
-#include "waveforms/generator_scripts.hpp"
+#include "waveforms/generator_formats.hpp"
 
 namespace tofsmith {
 

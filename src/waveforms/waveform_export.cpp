@@ -11,8 +11,7 @@
 #include "camera/shared/actual_code.hpp"
 #include "core/shared/text_numbers.hpp"
 #include "tofsmith/core/error.hpp"
-#include "waveforms/keysight.hpp"
-#include "waveforms/tektronix.hpp"
+#include "waveforms/generator_formats.hpp"
 
 namespace tofsmith {
 

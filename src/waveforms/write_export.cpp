@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "io/documents/shared/result_json.hpp"
+#include "io/documents/shared/document_text.hpp"
 #include "io/shared/read_file.hpp"
 #include "report/shared/table_of_rows.hpp"
 #include "tofsmith/camera/generator_report.hpp"

@@ -167,6 +167,13 @@ TEST(Decoder, PixelsWithoutReliableDepthAreMarked) {
   expect_statuses_of_bad_pixels<DecodeSetup>("hamiltonian-k4");
 }
 
+TEST(Decoder, AFaintPixelHasItsDepth) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  std::vector<float> raw;
+  setup.append_expected(raw, 100.0, 30.0, 1e5);
+  EXPECT_NEAR(decode_pixels(setup.decoder, raw).depth_m(0, 0), setup.camera.range_m() / 8, 1e-2);
+}
+
 TEST(Decoder, NegativeSignalIsNoReturn) { expect_negative_signal_is_no_return<Decoder>(); }
 
 TEST(Decoder, NegativeMeasurementsAreData) {

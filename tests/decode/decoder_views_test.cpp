@@ -173,11 +173,14 @@ TEST(Decoder, UsesAllDigitsOfDoubles) {
     for (int k = 0; k < 4; ++k) raw.push_back(1e9 + table.correlation(bin, k));
   }
   const ReferenceDecoder reference(table);
-  const Frame<double> frame(raw, layouts(4).front());
   std::vector<std::int32_t> expected;
   for (std::size_t i = 0; i < frame_pixels; ++i) expected.push_back(reference.bin(&raw[4 * i]));
   EXPECT_EQ(expected[77], 77);
-  for_each_target([&] { EXPECT_EQ(decoded(setup.decoder, frame.view).bin.pixels, expected); });
+  for (const Layout& layout : layouts(4)) {
+    SCOPED_TRACE(layout.name);
+    const Frame<double> frame(raw, layout);
+    for_each_target([&] { EXPECT_EQ(decoded(setup.decoder, frame.view).bin.pixels, expected); });
+  }
 }
 
 template <typename Number>

@@ -8,9 +8,8 @@
 
 #include "design/atlas/nearest_codes.hpp"
 #include "design/run_lengths.hpp"
+#include "design_setup.hpp"
 #include "german_locale.hpp"
-#include "same_code.hpp"
-#include "small_design.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

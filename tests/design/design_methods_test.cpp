@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "design_setup.hpp"
 #include "random_cameras.hpp"
 #include "refusal.hpp"
 #include "sanitizers.hpp"
-#include "small_design.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/design.hpp"
 

@@ -8,9 +8,8 @@
 #include <cmath>
 
 #include "design/factorize/factorized_code.hpp"
+#include "design_setup.hpp"
 #include "refusal.hpp"
-#include "same_code.hpp"
-#include "small_design.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -15,9 +15,8 @@
 #include "core/shared/random.hpp"
 #include "design/baselines.hpp"
 #include "design/explanation.hpp"
-#include "same_code.hpp"
+#include "design_setup.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
-#include "small_design.hpp"
 #include "tofsmith/code/families.hpp"
 
 namespace tofsmith {

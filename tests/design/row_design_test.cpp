@@ -5,8 +5,8 @@
 
 #include "design/rows/dim_light.hpp"
 #include "design/rows/tone_rows.hpp"
+#include "design_setup.hpp"
 #include "rows_setup.hpp"
-#include "same_code.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/depth_error.hpp"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <numeric>
 
-#include "io/documents/lens_calibration.hpp"
+#include "io/documents/shared/lens_document.hpp"
+#include "io/images/array_image.hpp"
 #include "io/images/exr.hpp"
-#include "io/images/grey_image.hpp"
 #include "io/images/netpbm.hpp"
 #include "io/images/raw_dump_reader.hpp"
 #include "reader.hpp"

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "damaged_files.hpp"
+#include "design_setup.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
-#include "same_code.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/measured_table_file.hpp"

@@ -10,9 +10,9 @@
 #include <numbers>
 
 #include "damaged_files.hpp"
+#include "design_setup.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "rows_setup.hpp"
-#include "same_code.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"

@@ -7,9 +7,8 @@
 
 #include "damaged_directory.hpp"
 #include "damaged_files.hpp"
+#include "design_setup.hpp"
 #include "io/shared/read_file.hpp"
-#include "same_code.hpp"
-#include "small_design.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/result_document.hpp"

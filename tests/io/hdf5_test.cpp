@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "damaged_files.hpp"
-#include "io/arrays/stored_array.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/images/grey_image.hpp"
+#include "io/images/array_image.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/documents/lens_calibration.hpp"
+#include "io/documents/shared/lens_document.hpp"
 
 #include <gtest/gtest.h>
 

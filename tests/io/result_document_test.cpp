@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "small_design.hpp"
+#include "design_setup.hpp"
 
 namespace tofsmith {
 namespace {

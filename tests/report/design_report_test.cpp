@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "report/scene_section.hpp"
-#include "small_design.hpp"
+#include "design_setup.hpp"
+#include "report/design_sections.hpp"
 #include "tofsmith/report/code_figures.hpp"
 
 namespace tofsmith {

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "generated_shapes.hpp"
-#include "table_top_image.hpp"
 #include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {

@@ -164,7 +164,7 @@ TEST(ReceiverBound, LightOfPeakFactorOneMayStillBlink) {
             bound_of(code, camera).mae_m(point));
 }
 
-TEST(ReceiverBound, OfUniformAlbedoIsTheMeanOverItAndHoldsForDifferences) {
+TEST(ReceiverBound, OfUniformAlbedoIsTheMeanOverIt) {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = 60;
   camera.operating.signal_e_per_s = {1e3, 1e5};

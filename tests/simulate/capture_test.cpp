@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "captured_moments.hpp"
+#include "generated_shapes.hpp"
 #include "rows_setup.hpp"
 #include "simulate/pixel_capture.hpp"
-#include "table_top_image.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
@@ -95,12 +95,16 @@ TEST(Capture, HasTheMeanAndCovarianceOfTheModel) {
     one_tap.sensor.noise = rows.sensor.noise = noise;
     one_tap.sensor.dark_current_e_per_s = 2e3;
     rows.sensor.dark_current_e_per_s = 30.0;
-    rows.sensor.read_noise_e = 4.0;
+    rows.sensor.read_noise_e = 60.0;
     Camera two_taps = one_tap;
     two_taps.sensor.taps = 2;
     two_taps.sensor.modulation_contrast = 0.8;
     for (const Camera& camera : {one_tap, two_taps, rows})
       expect_moments_of_the_model(build_family("hamiltonian-k3", camera), camera, {5e3, 2e3}, 17.3);
+    Camera dim = one_tap;
+    dim.sensor.dark_current_e_per_s = 0.0;
+    dim.sensor.read_noise_e = 3.0;
+    expect_moments_of_the_model(build_family("hamiltonian-k3", dim), dim, {10.0, 1.0}, 17.3);
   }
 }
 

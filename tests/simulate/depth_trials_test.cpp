@@ -13,7 +13,7 @@
 
 #include "each_target.hpp"
 #include "simulate/pixel_capture.hpp"
-#include "simulate/trial_errors.hpp"
+#include "simulate/pixel_trials.hpp"
 #include "simulate/trial_kernel.hpp"
 
 namespace tofsmith {

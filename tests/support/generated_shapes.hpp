@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/shared/random.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/scene/shapes.hpp"
 
@@ -97,6 +98,11 @@ inline Mesh placed_mesh(TriangleMesh triangles, const Eigen::Vector3d& place, do
   mesh.mesh_to_world.translate(place);
   mesh.mesh_to_world.rotate(Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, -1, 0.5).normalized()));
   return mesh;
+}
+
+inline SceneImage table_top_image(int width, int height) {
+  const StagedScene scene = built_in_scene("table-top", width, height);
+  return ray_cast(scene.shapes, scene.view, scene.camera_to_world);
 }
 
 }  // namespace tofsmith

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "waveforms/siglent.hpp"
+#include "waveforms/generator_formats.hpp"
 
 namespace tofsmith {
 

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "sweep/file_system.hpp"
 #include "sweep/item_key.hpp"
 #include "sweep/store_file.hpp"
 #include "temporary_directory.hpp"

@@ -13,10 +13,8 @@
 #include "refusal.hpp"
 #include "tofsmith/io/number_table.hpp"
 #include "waveform_readers.hpp"
-#include "waveforms/keysight.hpp"
+#include "waveforms/generator_formats.hpp"
 #include "waveforms/pattern_memory.hpp"
-#include "waveforms/siglent.hpp"
-#include "waveforms/tektronix.hpp"
 
 namespace tofsmith {
 namespace {

@@ -7,10 +7,7 @@
 #include "damaged_files.hpp"
 #include "io/shared/read_file.hpp"
 #include "waveform_readers.hpp"
-#include "waveforms/generator_scripts.hpp"
-#include "waveforms/keysight.hpp"
-#include "waveforms/siglent.hpp"
-#include "waveforms/tektronix.hpp"
+#include "waveforms/generator_formats.hpp"
 
 namespace tofsmith {
 namespace {

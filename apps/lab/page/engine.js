@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Workers that answer calls: several share the calls of the page, a separate one runs designs. Calls
-// during interaction run one at a time, the newest one next.
+// Workers that answer calls: several share the calls of the page, a separate one runs designs.
+// During interaction, calls run one at a time, the newest one next.
 
 /** Error of a call that was cancelled or replaced by a newer call of the same lane. */
 export class Outdated extends Error {}

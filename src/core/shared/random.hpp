@@ -17,7 +17,7 @@ class RandomStream {
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return 0xffffffffu; }
 
-  /// @param block  number of skipped words, divided by 4
+  /// @param block  first value of the counter; each has 4 words
   RandomStream(std::uint64_t seed, std::uint64_t work_item, std::uint32_t trial = 0,
                std::uint32_t block = 0);
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/arrays/shared/sample_times.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/number_table.hpp"

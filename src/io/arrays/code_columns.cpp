@@ -15,7 +15,7 @@
 
 #include "core/shared/periodic.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
-#include "io/text/shared/line_cursor.hpp"
+#include "io/text/shared/text_lines.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/number_table.hpp"

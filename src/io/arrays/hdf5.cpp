@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/arrays/stored_array.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

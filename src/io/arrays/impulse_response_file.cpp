@@ -8,7 +8,7 @@
 
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/sample_times.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/number_table.hpp"
 

@@ -13,7 +13,7 @@
 #include "core/shared/enum_words.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/correction_arrays.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/npy.hpp"
@@ -23,11 +23,11 @@ namespace tofsmith {
 
 namespace {
 
-constexpr Eigen::Index max_samples = 65536, max_measurements = 64;
+constexpr Eigen::Index max_table_samples = 65536, max_table_measurements = 64;
 
 bool can_be_table(Eigen::Index samples, Eigen::Index measurements) {
-  return samples >= min_samples && samples <= max_samples && measurements >= 1 &&
-         measurements <= max_measurements;
+  return samples >= min_samples && samples <= max_table_samples && measurements >= 1 &&
+         measurements <= max_table_measurements;
 }
 
 void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<TableAxes> axes,
@@ -39,7 +39,7 @@ void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<Table
     throw IoError(place, fmt::format("found the shape ({}, {}); expected {} with N in [{}, {}] and "
                                      "K at most {}",
                                      rows, columns, expects_lying ? "(K, N)" : "(N, K)",
-                                     min_samples, max_samples, max_measurements));
+                                     min_samples, max_table_samples, max_table_measurements));
   if (!axes && upright && lying && rows <= columns)
     throw IoError(place, fmt::format("found the shape ({}, {}), which could be (N, K) or (K, N); "
                                      "expected the axes, --table-axes nk or kn",

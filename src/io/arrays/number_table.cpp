@@ -17,9 +17,8 @@
 #include "core/shared/enum_words.hpp"
 #include "core/shared/text_numbers.hpp"
 #include "io/arrays/shared/sample_times.hpp"
-#include "io/shared/file_kind.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/line_cursor.hpp"
+#include "io/text/shared/text_lines.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -9,7 +9,6 @@
 #include "core/shared/enum_words.hpp"
 #include "core/shared/text_numbers.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
-#include "io/shared/file_kind.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"

@@ -9,10 +9,8 @@
 
 #include "core/shared/hash.hpp"
 #include "io/documents/shared/document_text.hpp"
-#include "io/documents/shared/result_json.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/field_json.hpp"
-#include "io/text/json_reader.hpp"
 #include "io/text/shared/field_key.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/atomic_file.hpp"

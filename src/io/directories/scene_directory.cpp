@@ -11,7 +11,7 @@
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/json_reader.hpp"
+#include "io/text/field_json.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/atomic_file.hpp"

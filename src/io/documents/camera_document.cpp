@@ -12,7 +12,6 @@
 #include <sstream>
 
 #include "core/shared/text_numbers.hpp"
-#include "io/documents/lens_calibration.hpp"
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"

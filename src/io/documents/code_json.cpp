@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "io/documents/shared/document_text.hpp"
-#include "io/text/json_reader.hpp"
+#include "io/text/field_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

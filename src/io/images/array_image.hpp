@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,5 +33,20 @@ Image<float> image_from_pfm(PfmImage pfm, std::string_view file);
 
 /// @throws std::invalid_argument if the image is empty
 void require_pixels(const Image<float>& image);
+
+/// Recognizes .png, .tif, .tiff and .pgm.
+bool is_grey_image(const std::filesystem::path& path);
+
+/// Reads one number per pixel, (H, W), in the type of the file: unsigned integers of 8 or 16 bits;
+/// in TIFF also signed integers, 32 bits and floats.
+/// @throws IoError if the file is damaged, has colours, several pages or an unsupported encoding
+NpyArray read_grey_image(const std::filesystem::path& path);
+
+/// Reads binary (P5) or text (P2); uint8 if the maximum value is at most 255, else uint16.
+NpyArray parse_pgm(std::span<const std::byte> content, std::string_view file);
+
+/// Reads a single page in strips or tiles, uncompressed or with PackBits, LZW or Deflate.
+/// @see TIFF 6.0 specification
+NpyArray parse_tiff(std::span<const std::byte> content, std::string_view file);
 
 }  // namespace tofsmith

@@ -18,7 +18,7 @@
 #include "io/image_limits.hpp"
 #include "io/images/array_image.hpp"
 #include "io/images/depth_kind_fields.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/stray_light.hpp"
 #include "tofsmith/io/depth_file.hpp"

@@ -10,7 +10,7 @@
 
 #include "io/byte_cursor.hpp"
 #include "io/image_limits.hpp"
-#include "io/images/grey_image.hpp"
+#include "io/images/array_image.hpp"
 #include "io/shared/byte_order.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"

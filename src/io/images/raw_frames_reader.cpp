@@ -12,12 +12,11 @@
 #include <string>
 
 #include "decode/shared/marked_raw.hpp"
-#include "io/arrays/stored_array.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/image_limits.hpp"
 #include "io/images/array_image.hpp"
-#include "io/images/grey_image.hpp"
 #include "io/images/raw_dump_reader.hpp"
-#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "io/image_limits.hpp"
-#include "io/images/grey_image.hpp"
+#include "io/images/array_image.hpp"
 #include "io/shared/byte_order.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -13,7 +13,6 @@
 #include "io/byte_cursor.hpp"
 #include "io/meshes/polygon_soup.hpp"
 #include "io/shared/byte_order.hpp"
-#include "io/shared/file_kind.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -105,7 +104,7 @@ class TextReader {
   }
 
   void end_face() {
-    if (corners_ < 3) fail(fmt::format("found a loop of {} corners; expected 3", corners_));
+    if (corners_ < 3) fail(fmt::format("found a loop of {} corners; expected 3 or more", corners_));
     soup_.face_end.push_back(soup_.position_of.size());
     corners_ = 0;
   }

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/recordings/read_ahead.hpp"
+#include "io/recordings/prepared_frames.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/depth_kind.hpp"

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tofsmith {
@@ -24,5 +26,13 @@ std::string read_text_file(const std::filesystem::path& path,
                            std::uint64_t max_bytes = max_text_file_bytes);
 std::vector<std::byte> read_binary_file(const std::filesystem::path& path,
                                         std::uint64_t max_bytes = max_binary_file_bytes);
+
+/// Includes the dot; "" if there is no extension.
+std::string lower_extension(const std::filesystem::path& path);
+
+/// Returns the lower-case extension.
+/// @throws IoError naming the file and listing `known`
+std::string known_extension(const std::filesystem::path& path,
+                            std::initializer_list<std::string_view> known);
 
 }  // namespace tofsmith

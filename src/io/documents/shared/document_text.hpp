@@ -6,6 +6,12 @@
 #include <string>
 #include <string_view>
 
+#include "io/text/field_json.hpp"
+#include "tofsmith/camera/generator_report.hpp"
+#include "tofsmith/design/design.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/robustness.hpp"
+
 namespace tofsmith {
 
 /// @throws IoError "file:line:column: ..." at the first syntax error
@@ -19,5 +25,21 @@ std::string format_json(const nlohmann::ordered_json& document);
 /// Formats plain values first, then one section per table; nested tables are in braces.
 /// @throws std::invalid_argument if a text is not UTF-8
 std::string format_toml(const nlohmann::ordered_json& document);
+
+nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rotation_bin);
+
+/// Entries do not contain standard errors of outlier rates.
+/// @throws IoError naming file and member
+DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document);
+
+/// @throws IoError if the text is not the name of a kind
+DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind);
+
+nlohmann::ordered_json generators_json(const std::vector<GeneratorReport>& reports);
+nlohmann::ordered_json generator_loss_json(const GeneratorLoss& loss, DepthErrorKind kind);
+
+nlohmann::ordered_json measurements_json(const Candidate& candidate);
+/// Omits histories; none if the entry has no `per_measurement`.
+std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry);
 
 }  // namespace tofsmith

@@ -28,9 +28,6 @@ SettingValue toml_value_of(const toml::node& node, std::string place);
 /// Integers are written without a fraction.
 SettingValue toml_value_of(double number, std::string place);
 
-/// Returns a number, or else a string.
-SettingValue toml_value_of_line(const std::string& line, std::string place);
-
 /// A TOML file with settings applied, which stores the position of each value.
 class TomlDocument {
  public:

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/text/shared/line_cursor.hpp"
+#include "io/text/shared/text_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/shared/text_numbers.hpp"
+#include "tofsmith/io/csv.hpp"
 
 namespace tofsmith {
 
@@ -28,6 +29,13 @@ std::vector<TextLine> content_lines(std::string_view text) {
 std::optional<double> finite_number_in(std::string_view text) {
   const std::optional<double> number = number_in(trimmed(text));
   return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
 }
 
 }  // namespace tofsmith
