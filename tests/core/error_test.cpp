@@ -34,10 +34,10 @@ TEST(BrokenRule, IsThrownByAFailedCheck) {
 }
 
 TEST(IoError, StoresPlaceAndProblem) {
-  const IoError error("camera.toml:3:1", "found 17: expected 1 .. 16");
+  const IoError error("camera.toml:3:1", "found 17: expected 1 to 16");
   EXPECT_EQ(error.place(), "camera.toml:3:1");
-  EXPECT_EQ(error.problem(), "found 17: expected 1 .. 16");
-  EXPECT_STREQ(error.what(), "camera.toml:3:1: found 17: expected 1 .. 16");
+  EXPECT_EQ(error.problem(), "found 17: expected 1 to 16");
+  EXPECT_STREQ(error.what(), "camera.toml:3:1: found 17: expected 1 to 16");
 }
 
 TEST(EditDistance, CountsEditsAndTranspositions) {
