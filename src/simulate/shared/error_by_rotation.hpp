@@ -12,11 +12,13 @@
 
 namespace tofsmith {
 
-/// Sum of linear errors [bin] at every rotation for uniform depths, stored by its jumps: jumps[r]
-/// is the increase from rotation r - 1 to r; jumps[0] is the sum at rotation 0.
+/// Sum of linear errors [bin] at every rotation for uniform depths.
 class ErrorByRotation {
  public:
-  explicit ErrorByRotation(int samples) : jumps_(static_cast<std::size_t>(samples) + 1, 0.0) {}
+  explicit ErrorByRotation(int samples)
+      : jumps_(static_cast<std::size_t>(samples) + 1, 0.0),
+        jumps_of_means_(jumps_),
+        parts_of_means_(jumps_) {}
 
   int samples() const { return static_cast<int>(jumps_.size()) - 1; }
 
@@ -24,23 +26,52 @@ class ErrorByRotation {
     const auto samples = static_cast<double>(jumps_.size() - 1);
     const auto [low, high] = std::minmax(true_bin, decoded_bin);
     const double error = high - low;
-    jumps_[0] += error;
+    sum_ += error;
     // An origin at bin r separates the two depths if low < r <= high.
     const double longer = samples - 2.0 * error;
     jumps_[static_cast<std::size_t>(low) + 1] += longer;
     if (high < samples - 1.0) jumps_[static_cast<std::size_t>(high) + 1] -= longer;
+    // Origins in [r - 0.5, r + 0.5), r = samples for the first half of the range's last bin.
+    const auto first = static_cast<std::size_t>(low + 0.5);
+    const auto last = static_cast<std::size_t>(high + 0.5);
+    if (first == last) {
+      parts_of_means_[first] += longer * error;
+      return;
+    }
+    parts_of_means_[first] += longer * (static_cast<double>(first) + 0.5 - low);
+    parts_of_means_[last] += longer * (high + 0.5 - static_cast<double>(last));
+    jumps_of_means_[first + 1] += longer;
+    jumps_of_means_[last] -= longer;
   }
   void merge(const ErrorByRotation& other) {
-    for (std::size_t r = 0; r < jumps_.size(); ++r) jumps_[r] += other.jumps_[r];
+    sum_ += other.sum_;
+    for (std::size_t r = 0; r < jumps_.size(); ++r) {
+      jumps_[r] += other.jumps_[r];
+      jumps_of_means_[r] += other.jumps_of_means_[r];
+      parts_of_means_[r] += other.parts_of_means_[r];
+    }
   }
-  std::vector<double> sums() const {
-    std::vector<double> result(jumps_.begin(), jumps_.end() - 1);
-    for (std::size_t r = 1; r < result.size(); ++r) result[r] += result[r - 1];
+  std::vector<double> sums() const { return accumulated(jumps_); }
+  /// Means over origins within half a bin of each rotation. Their variance is much smaller where
+  /// errors are small, because few depths are separated by one origin.
+  std::vector<double> means_over_origins() const {
+    std::vector<double> result = accumulated(jumps_of_means_);
+    for (std::size_t r = 0; r < result.size(); ++r) result[r] += parts_of_means_[r];
+    result[0] += parts_of_means_.back();
     return result;
   }
 
  private:
-  std::vector<double> jumps_;
+  std::vector<double> accumulated(const std::vector<double>& jumps) const {
+    std::vector<double> result(jumps.begin(), jumps.end() - 1);
+    result[0] += sum_;
+    for (std::size_t r = 1; r < result.size(); ++r) result[r] += result[r - 1];
+    return result;
+  }
+
+  double sum_ = 0.0;           // of all errors, without separation
+  std::vector<double> jumps_;  // [r]: increase of sums() from rotation r - 1 to r
+  std::vector<double> jumps_of_means_, parts_of_means_;
 };
 
 /// Sum of errors [bin] at every rotation for non-uniform depths, from trials with uniform depths:
@@ -81,6 +112,7 @@ class WeighedErrorByRotation {
                    [](double sum) { return std::max(sum, 0.0); });  // removes rounding errors
     return result;
   }
+  std::vector<double> means_over_origins() const { return sums(); }
 
  private:
   Eigen::VectorXd weight_;  // per bin, mean 1
