@@ -39,18 +39,18 @@ HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
   }
 }
 
-/// Finds the best point of every chord. With u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0 it is at t
-/// = v / (u + v) if both are > 0, otherwise at the better end. Scores are S_j, or -1 in the
-/// padding; returns the largest.
+/// Finds the best point of each chord in [first, end), in whole vectors. With u = Q11 b0 - Q01 b1
+/// and v = Q00 b1 - Q01 b0 it is at t = v / (u + v) if both are > 0, otherwise at the better end.
+/// Scores are S_j, or -1 in the padding; returns the largest.
 template <typename Value>
-HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve,
+HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve, int first, int end,
                               typename SoftDecoderOf<Value>::Scratch& scratch) {
   const Tag<Value> d;
   const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const auto min_square = hn::Set(d, smallest_square);
   auto largest = hn::Set(d, -1.0f);
-  for (int j = 0; j < curve.samples; j += lanes) {
+  for (int j = first; j < end; j += lanes) {
     const auto b0 = hn::Load(d, scratch.match.data() + j);
     const auto b1 = hn::LoadU(d, scratch.match.data() + j + 1);
     const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), min_square);
@@ -99,22 +99,28 @@ HWY_INLINE int best_bin(const DecodingCurveOf<Value>& curve,
     hn::Store(score, d, scratch.ratio.data() + j);
     largest = hn::Max(largest, score);
   }
-  const Value wanted = hn::GetLane(hn::MaxOfLanes(d, largest));
-  int best = 0;
-  while (best + 1 < curve.samples && scratch.ratio[static_cast<std::size_t>(best)] != wanted)
-    ++best;
-  return best;
+  const auto wanted = hn::MaxOfLanes(d, largest);
+  for (int j = 0; j < curve.samples; j += lanes) {
+    const auto lane = hn::FindFirstTrue(d, hn::Eq(hn::Load(d, scratch.ratio.data() + j), wanted));
+    if (lane >= 0) return j + static_cast<int>(lane);
+  }
+  return curve.samples - 1;  // not a number
 }
 
 template <typename Value>
 Value best_place(const DecodingCurveOf<Value>& curve, const Value* electrons,
                  typename SoftDecoderOf<Value>::Scratch& scratch) {
   match_points(curve, electrons, scratch);
-  const auto right = static_cast<std::size_t>(best_bin(curve, scratch));
-  score_chords(curve, scratch);
-  const std::size_t left = right > 0 ? right - 1 : static_cast<std::size_t>(curve.samples) - 1;
-  const std::size_t chord = scratch.score[left] > scratch.score[right] ? left : right;
-  return static_cast<Value>(chord) + scratch.place[chord];
+  const int right = best_bin(curve, scratch);
+  const int left = right > 0 ? right - 1 : curve.samples - 1;
+  const int lanes = lanes_of(Tag<Value>());
+  for (const int chord : {left, right}) {
+    const int first = chord - chord % lanes;
+    score_chords(curve, first, first + lanes, scratch);
+  }
+  const auto score = [&](int chord) { return scratch.score[static_cast<std::size_t>(chord)]; };
+  const int chord = score(left) > score(right) ? left : right;
+  return static_cast<Value>(chord) + scratch.place[static_cast<std::size_t>(chord)];
 }
 
 template <typename D, typename V, typename Value>
@@ -261,7 +267,7 @@ Value soft_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
                  const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,
                  typename SoftDecoderOf<Value>::Scratch& scratch, Value* by_electrons) {
   match_points(curve, electrons, scratch);
-  const Value largest = score_chords(curve, scratch);
+  const Value largest = score_chords(curve, 0, curve.samples, scratch);
   Value sums[2];
   weigh_chords(curve, question, largest, scratch, sums);
   const Value expected = sums[1] / sums[0];
