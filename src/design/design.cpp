@@ -122,12 +122,12 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                        }});
   if (!has_rows && includes(options.method, DesignMethod::optimize))
     for (const int exposures : optimizable_exposures(camera, options, atlas))
-      tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
-                       why_not_optimizable(camera, exposures),
-                       [&, exposures](const Progress& part) {
-                         return optimized_candidates(camera, exposures, options,
-                                                     starts_of(atlas.codes, result), part);
-                       }});
+      tasks.push_back(
+          {DesignMethod::optimize, optimized_name(exposures), 3.0,
+           why_not_optimizable(camera, exposures), [&, exposures](const Progress& part) {
+             return optimized_candidates(camera, exposures, options, starts_of(atlas.codes, result),
+                                         error_to_beat_m(camera, options, result.candidates), part);
+           }});
   std::erase_if(
       tasks, [&](const Task& task) { return !serves(task.method, task.why_not, options, result); });
   return tasks;

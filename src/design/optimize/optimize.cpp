@@ -26,7 +26,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::uint64_t polish_key = 103, judging_key = 104, split_key = 105;
+constexpr std::uint64_t polish_key = 103, judging_key = 104, split_key = 105, precise_key = 106;
 
 bool separates_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
@@ -93,31 +93,48 @@ struct FinishedCode {
   std::string start;
 };
 
+void sort_by_error(std::vector<FinishedCode>& codes) {
+  std::stable_sort(codes.begin(), codes.end(), [](const FinishedCode& a, const FinishedCode& b) {
+    return a.log_error_bin < b.log_error_bin;
+  });
+}
+
+/// Polishes the edges of the best codes, and of the two best of these again with less noise.
 /// @param key     of the random numbers
 /// @param before  number of codes from earlier stages, for random numbers
 std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
                                          const std::vector<PoolEntry>& entries, OptimizePool& pool,
                                          const OptimizeOptions& options, std::uint64_t key,
                                          std::uint64_t before, const Progress& progress) {
+  constexpr std::size_t polished_again = 2;
+  constexpr int more_trials = 4;
   const Sharpness sharpness = final_sharpness(problem);
   const int polish_steps = options.polish ? options.polish_steps : 0;
+  const std::size_t again = polish_steps > 0 ? std::min(polished_again, entries.size()) : 0;
   std::vector<FinishedCode> finished(entries.size());
-  SharedProgress shared(progress, static_cast<double>(entries.size()) * polish_steps, "edges");
-  parallel_for(std::ssize(entries), [&](std::int64_t i) {
-    const PoolEntry& entry = entries[static_cast<std::size_t>(i)];
-    const std::uint64_t work_item = combine_keys(key, before + static_cast<std::uint64_t>(i));
-    FinishedCode& its = finished[static_cast<std::size_t>(i)];
-    its.code = polish_edges(
-        problem, binarized(problem, render(problem.space, entry.parameters, sharpness)),
-        polish_steps, options.trials_per_step, options.seed, work_item, &shared);
-    its.log_error_bin = judge.score(sampled_on(problem.space, its.code)).log_error_bin;
-    its.start = entry.start;
+  SharedProgress shared(progress, static_cast<double>(entries.size() + again) * polish_steps,
+                        "edges");
+  const auto polish = [&](FinishedCode& code, int trials, std::uint64_t first_key, std::size_t i) {
+    code.code = polish_edges(problem, std::move(code.code), polish_steps, trials, options.seed,
+                             combine_keys(first_key, before + i), &shared);
+    code.log_error_bin = judge.score(sampled_on(problem.space, code.code)).log_error_bin;
+  };
+  parallel_for(std::ssize(entries), [&](std::int64_t index) {
+    const auto i = static_cast<std::size_t>(index);
+    const PoolEntry& entry = entries[i];
+    finished[i].code = binarized(problem, render(problem.space, entry.parameters, sharpness));
+    finished[i].start = entry.start;
+    polish(finished[i], options.trials_per_step, key, i);
   });
-  pool.add_steps(std::ssize(entries) * polish_steps);
-  std::stable_sort(finished.begin(), finished.end(),
-                   [](const FinishedCode& a, const FinishedCode& b) {
-                     return a.log_error_bin < b.log_error_bin;
-                   });
+  sort_by_error(finished);
+  parallel_for(static_cast<std::int64_t>(again), [&](std::int64_t index) {
+    const auto i = static_cast<std::size_t>(index);
+    FinishedCode precise = finished[i];
+    polish(precise, more_trials * options.trials_per_step, combine_keys(precise_key, key), i);
+    if (precise.log_error_bin < finished[i].log_error_bin) finished[i] = std::move(precise);
+  });
+  sort_by_error(finished);
+  pool.add_steps(static_cast<std::int64_t>(entries.size() + again) * polish_steps);
   return finished;
 }
 
@@ -140,7 +157,9 @@ std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool&
     candidate.message = fmt::format(
         "gradient descent from {}{}{}{}", its.start, has_shares ? ", with exposure times" : "",
         options.polish ? ", with refined edges" : "",
-        pool.ended_early() ? "; stopped early without further gain" : "");
+        pool.lost_to_rival() ? "; stopped early, because another number of exposures is better"
+        : pool.ended_early() ? "; stopped early without further gain"
+                             : "");
     candidate.per_measurement = reports_of(candidate.code, its.start);
     candidates.push_back(std::move(candidate));
   }
@@ -149,9 +168,15 @@ std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool&
 
 enum class ExposureTimes { as_in_camera, free };
 
+struct SearchTask {
+  ExposureTimes times = ExposureTimes::as_in_camera;
+  /// Smallest error found with other numbers of exposures, in trials of the search.
+  double rival_m = infinity;
+};
+
 std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposures,
                                     const OptimizeOptions& options, std::span<const CodeSet> also,
-                                    ExposureTimes times, const Progress& progress) {
+                                    const SearchTask& task, const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
@@ -161,20 +186,27 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   // codes, which become feasible.
   OptimizePool pool(problem, options, also, camera.range_m() / problem.space.samples());
   const CodeJudge judge = final_judge(problem, options);
-  const std::vector<PoolStage> stages = stages_of(options);
+  std::vector<PoolStage> stages = stages_of(options);
   std::vector<double> weights;
   for (const PoolStage& stage : stages) weights.push_back(stage.starts);
   const ProgressParts of_stages(progress, weights);
   std::vector<Candidate> candidates;
   std::uint64_t finished_before = 0, split_before = 0;
-  const double splitting = times == ExposureTimes::free ? 40.0 : 0.0;
+  const bool splits = task.times == ExposureTimes::free;
+  const double splitting = splits ? 40.0 : 0.0;
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const ProgressParts parts(of_stages[s], {40, 35, 10, 15, 0.6 * splitting, 0.4 * splitting});
-    pool.run_starts(stages[s], parts[0]);
-    pool.run_hops(stages[s], parts[1]);
-    pool.refine(stages[s], parts[2]);
+    PoolStage& stage = stages[s];
+    pool.run_starts(stage, parts[0]);
+    // Earlier stages find all codes of a search with less effort.
+    const bool is_last = s + 1 == stages.size();
+    pool.run_hops(stage, is_last ? task.rival_m : infinity, parts[1]);
+    if (pool.lost_to_rival())
+      stage.refined = std::min(stage.refined, 2);
+    else
+      pool.refine(stage, parts[2]);
     std::vector<PoolEntry> entries =
-        entries_to_finish(problem, pool, camera, stages[s], final_sharpness(problem));
+        entries_to_finish(problem, pool, camera, stage, final_sharpness(problem));
     std::vector<FinishedCode> finished = finished_codes(problem, judge, entries, pool, options,
                                                         polish_key, finished_before, parts[3]);
     finished_before += finished.size();
@@ -184,9 +216,9 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
       std::move(made.begin(), made.end(), std::back_inserter(candidates));
     };
     add(std::move(finished));
-    if (times != ExposureTimes::free) continue;
+    if (!splits) continue;
     for (PoolEntry& entry : entries) entry.parameters.shares = Eigen::MatrixXd::Zero(exposures, 1);
-    std::vector<PoolEntry> split = pool.with_free_shares(stages[s], parts[4]);
+    std::vector<PoolEntry> split = pool.with_free_shares(stage, parts[4]);
     std::move(split.begin(), split.end(), std::back_inserter(entries));
     finished =
         finished_codes(problem, judge, entries, pool, options, split_key, split_before, parts[5]);
@@ -209,23 +241,23 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
 /// Codes for binary arms also compete and provide one more start.
 std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
                                      const OptimizeOptions& options, std::span<const CodeSet> also,
-                                     ExposureTimes times, const Progress& progress) {
+                                     const SearchTask& task, const Progress& progress) {
   const ProgressParts parts(progress, {50, 50});
   std::vector<Camera> switching(variants.begin(), variants.end());
   for (Camera& camera : switching) camera.light.binary = camera.sensor.binary = true;
   std::vector<Candidate> switched =
-      search_codes(switching, exposures, options, also, times, parts[0]);
+      search_codes(switching, exposures, options, also, task, parts[0]);
   std::vector<CodeSet> starts{switched.front().code.renamed("binary code")};
   starts.insert(starts.end(), also.begin(), also.end());
   std::vector<Candidate> analog =
-      search_codes(variants, exposures, options, starts, times, parts[1]);
+      search_codes(variants, exposures, options, starts, task, parts[1]);
   std::move(analog.begin(), analog.end(), std::back_inserter(switched));
   return switched;
 }
 
 std::vector<Candidate> search(std::span<const Camera> variants, int exposures,
                               const OptimizeOptions& options, std::span<const CodeSet> also,
-                              ExposureTimes times, const Progress& progress) {
+                              const SearchTask& task, const Progress& progress) {
   options.validate();
   require(!variants.empty(), "variants", variants.size(), "must contain at least one camera");
   const Camera& camera = variants.front();
@@ -234,8 +266,8 @@ std::vector<Candidate> search(std::span<const Camera> variants, int exposures,
     starts.push_back(code.is_signed() ? code.buckets_of_signed() : code);
   const bool switches = camera.light.binary && camera.sensor.binary;
   std::vector<Candidate> candidates =
-      switches ? search_codes(variants, exposures, options, starts, times, progress)
-               : search_analog(variants, exposures, options, starts, times, progress);
+      switches ? search_codes(variants, exposures, options, starts, task, progress)
+               : search_analog(variants, exposures, options, starts, task, progress);
   if (camera.sensor.is_signed())
     for (Candidate& c : candidates) {
       c.code = c.code.signed_of_buckets();
@@ -265,7 +297,7 @@ void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"
 std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
                                 const OptimizeOptions& options, std::span<const CodeSet> also,
                                 const Progress& progress) {
-  return search(variants, exposures, options, also, ExposureTimes::as_in_camera, progress);
+  return search(variants, exposures, options, also, {}, progress);
 }
 
 std::vector<Candidate> optimize_with_shares(std::span<const Camera> variants, int exposures,
@@ -275,7 +307,7 @@ std::vector<Candidate> optimize_with_shares(std::span<const Camera> variants, in
   for (const Camera& camera : variants)
     require(camera.exposure_s.each_s.empty(), "exposure_s", "a list",
             "must be the total time to optimize exposure times");
-  return search(variants, exposures, options, also, ExposureTimes::free, progress);
+  return search(variants, exposures, options, also, {.times = ExposureTimes::free}, progress);
 }
 
 std::vector<Candidate> optimize(const Camera& camera, int exposures, const OptimizeOptions& options,
@@ -295,26 +327,37 @@ std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions
     if (exposures.size() < max_tried &&
         std::find(exposures.begin(), exposures.end(), code.exposures()) == exposures.end())
       exposures.push_back(code.exposures());
-  std::sort(exposures.begin(), exposures.end());
   return exposures;
 }
 
 std::string optimized_name(int exposures) { return fmt::format("optimized-k{}", exposures); }
 
+double error_to_beat_m(const Camera& camera, const DesignOptions& options,
+                       std::span<const Candidate> candidates) {
+  const bool has_other_criterion =
+      camera.operating.multipath || camera.operating.interference || options.split_exposures;
+  double least_m = infinity;
+  if (has_other_criterion || !options.exposures.empty()) return least_m;
+  for (const Candidate& c : candidates)
+    if (c.method == "optimize" && c.search)
+      least_m = std::min(least_m, c.search->steps.back().error_m);
+  return least_m;
+}
+
 std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
                                             const DesignOptions& options,
-                                            const std::vector<CodeSet>& starts,
+                                            const std::vector<CodeSet>& starts, double rival_m,
                                             const Progress& progress) {
   std::vector<CodeSet> also;
   for (const CodeSet& code : starts)
     if (code.exposures() == exposures) also.push_back(code);
-  OptimizeOptions search = options.optimize;
-  search.seed = search_seed(options);
+  OptimizeOptions of_search = options.optimize;
+  of_search.seed = search_seed(options);
   const std::vector<Camera> variants = variants_of(camera, options);
   std::vector<Candidate> candidates =
       options.split_exposures && camera.exposure_s.each_s.empty()
-          ? optimize_with_shares(variants, exposures, search, also, progress)
-          : optimize(variants, exposures, search, also, progress);
+          ? optimize_with_shares(variants, exposures, of_search, also, progress)
+          : search(variants, exposures, of_search, also, {.rival_m = rival_m}, progress);
   for (Candidate& c : candidates) c.code.provenance.seed = options.seed;
   return candidates;
 }

@@ -93,7 +93,7 @@ std::vector<double> sums_of(Errors errors, const TrialBatch& batch,
     errors.add(batch.trials[t].depth_periods * samples,
                std::min(decoded_bin[t], std::nextafter(samples, 0.0)));
   }
-  return errors.sums();
+  return errors.means_over_origins();
 }
 
 }  // namespace
@@ -360,10 +360,14 @@ OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& 
              work_item(Phase::judging, 0)),
       codes_(fitting_codes(problem.space, also)) {}
 
+double OptimizePool::error_m(double log_error_bin) const {
+  return std::exp(log_error_bin) * bin_m_;
+}
+
 void OptimizePool::record(double log_error_bin) {
-  const double error_m = std::exp(log_error_bin) * bin_m_;
-  const double best_m = history_.empty() ? error_m : history_.back().error_m;
-  history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, error_m)});
+  const double next_m = error_m(log_error_bin);
+  const double best_m = history_.empty() ? next_m : history_.back().error_m;
+  history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, next_m)});
 }
 
 /// Results are at the best rotation.
@@ -426,13 +430,19 @@ void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) 
                                                              stage.refined, std::ssize(entries_)));
 }
 
-void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
+void OptimizePool::run_hops(const PoolStage& stage, double rival_m, const Progress& progress) {
+  constexpr double first_margin = 0.12, last_margin = 0.02;  // hops reduce errors by up to 10 %
   const auto count = static_cast<std::size_t>(stage.hops);
   int without_gain = 0;
   ended_early_ = false;
   SharedProgress shared(progress, static_cast<double>(count - hops_done_) * options_.steps_per_hop,
                         "hops");
   for (std::size_t first = hops_done_; first < count; first += hops_together) {
+    const double left =
+        static_cast<double>(count - first) / static_cast<double>(count - hops_done_);
+    const double margin = last_margin + left * (first_margin - last_margin);
+    lost_to_rival_ = error_m(entries_.front().score.log_error_bin) > (1.0 + margin) * rival_m;
+    if (lost_to_rival_) break;
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::hopping, i), 1u << 30);

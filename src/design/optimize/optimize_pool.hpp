@@ -104,8 +104,9 @@ class OptimizePool {
 
   void run_starts(const PoolStage& stage, const Progress& progress);
   /// Descends from the best entries and then from perturbed copies, until hops or patience are used
-  /// up.
-  void run_hops(const PoolStage& stage, const Progress& progress);
+  /// up, or until the best entry is so much worse than `rival_m` that it is unlikely to catch up.
+  /// @param rival_m  smallest error of another search for the same camera, or infinity
+  void run_hops(const PoolStage& stage, double rival_m, const Progress& progress);
   /// Descends from softened copies of the best entries; keeps the better of each.
   void refine(const PoolStage& stage, const Progress& progress);
   /// Descends from softened copies of the best entries, jointly over waveforms and exposure shares,
@@ -117,12 +118,14 @@ class OptimizePool {
   std::int64_t steps() const { return steps_; }
   void add_steps(std::int64_t steps) { steps_ += steps; }
   bool ended_early() const { return ended_early_; }
+  bool lost_to_rival() const { return lost_to_rival_; }
   void record(double log_error_bin);
 
  private:
   void descend_all(std::vector<PoolEntry>& entries, int steps, double rate, std::uint64_t phase,
                    std::size_t first_item, SharedProgress& progress);
   void keep(std::vector<PoolEntry> entries);
+  double error_m(double log_error_bin) const;
 
   const DesignProblem* problem_;
   OptimizeOptions options_;
@@ -136,7 +139,7 @@ class OptimizePool {
   std::vector<SearchStep> history_;
   std::int64_t steps_ = 0;
   std::size_t starts_done_ = 0, hops_done_ = 0, refinements_done_ = 0, splits_done_ = 0;
-  bool ended_early_ = false;
+  bool ended_early_ = false, lost_to_rival_ = false;
 };
 
 }  // namespace tofsmith

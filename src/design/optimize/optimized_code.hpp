@@ -22,17 +22,24 @@ std::vector<Candidate> optimize_with_shares(std::span<const Camera> variants, in
                                             std::span<const CodeSet> also,
                                             const Progress& progress);
 
-/// Returns DesignOptions::exposures or, if empty, the three numbers with the best atlas codes;
-/// without them or with operating multipath, suggested_exposures().
+/// Returns DesignOptions::exposures or, if empty, the three numbers with the best atlas codes, best
+/// first; without them or with operating multipath, suggested_exposures().
 std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options,
                                        const Contenders& atlas);
 
 std::string optimized_name(int exposures);
 
+/// Returns the smallest error of the optimized codes in `candidates`, in trials of the search.
+/// Infinity if the user lists numbers of exposures, or if more than this error ranks codes.
+double error_to_beat_m(const Camera& camera, const DesignOptions& options,
+                       std::span<const Candidate> candidates);
+
+/// @param rival_m  error_to_beat_m(); searches of other numbers of exposures end early if they are
+///                 clearly worse
 /// @throws std::invalid_argument as optimize(); Interrupted
 std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
                                             const DesignOptions& options,
-                                            const std::vector<CodeSet>& starts,
+                                            const std::vector<CodeSet>& starts, double rival_m,
                                             const Progress& progress);
 
 }  // namespace tofsmith
