@@ -99,7 +99,7 @@ void sort_by_error(std::vector<FinishedCode>& codes) {
   });
 }
 
-/// Polishes the edges of the best codes, and of the two best of these again with less noise.
+/// Polishes the edges of all entries, then again those of the two best results, with less noise.
 /// @param key     of the random numbers
 /// @param before  number of codes from earlier stages, for random numbers
 std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,

@@ -104,7 +104,7 @@ class OptimizePool {
 
   void run_starts(const PoolStage& stage, const Progress& progress);
   /// Descends from the best entries and then from perturbed copies, until hops or patience are used
-  /// up, or until the best entry is so much worse than `rival_m` that it is unlikely to catch up.
+  /// up, or until the best entry is unlikely to become better than `rival_m`.
   /// @param rival_m  smallest error of another search for the same camera, or infinity
   void run_hops(const PoolStage& stage, double rival_m, const Progress& progress);
   /// Descends from softened copies of the best entries; keeps the better of each.

@@ -31,7 +31,7 @@ class ErrorByRotation {
     const double longer = samples - 2.0 * error;
     jumps_[static_cast<std::size_t>(low) + 1] += longer;
     if (high < samples - 1.0) jumps_[static_cast<std::size_t>(high) + 1] -= longer;
-    // Origins in [r - 0.5, r + 0.5), r = samples for the first half of the range's last bin.
+    // Origins in [r - 0.5, r + 0.5); the last half bin of the range counts as r = samples.
     const auto first = static_cast<std::size_t>(low + 0.5);
     const auto last = static_cast<std::size_t>(high + 0.5);
     if (first == last) {
