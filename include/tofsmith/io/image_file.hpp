@@ -17,8 +17,6 @@ namespace tofsmith {
 
 /// Converts an sRGB value to linear light, both in [0, 1]. @see IEC 61966-2-1
 double linear_from_srgb(double srgb);
-/// Inverse of linear_from_srgb().
-double srgb_from_linear(double linear);
 
 /// Returns the luminance of linear light with Rec. 709 (sRGB) primaries.
 constexpr double luminance_rec709(double red, double green, double blue) {
