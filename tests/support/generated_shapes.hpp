@@ -9,7 +9,10 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
+#include <variant>
 
 #include "core/shared/random.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
@@ -89,6 +92,16 @@ inline Ray ray_about_origin(std::uint64_t item, double spread_m = 3.0) {
   const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
   const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
   return {spread_m * origin, direction.normalized()};
+}
+
+/// Returns the nearest hit without a search structure: a slow reference for RayCaster.
+inline std::optional<Hit> nearest_hit(std::span<const Shape> shapes, const Ray& ray) {
+  std::optional<Hit> nearest;
+  for (const Shape& shape : shapes) {
+    const auto hit = std::visit([&](const auto& s) { return intersect(s, ray); }, shape);
+    if (hit && (!nearest || hit->distance_m < nearest->distance_m)) nearest = hit;
+  }
+  return nearest;
 }
 
 inline Mesh placed_mesh(TriangleMesh triangles, const Eigen::Vector3d& place, double scale_m) {

@@ -75,9 +75,6 @@ class RayCaster {
   std::unique_ptr<const Prepared> prepared_;
 };
 
-/// Returns the nearest hit without a search structure: a slow reference for RayCaster.
-std::optional<Hit> nearest_hit(std::span<const Shape> shapes, const Ray& ray);
-
 /// Returns the image of RayCaster::see() for a single view. @throws std::invalid_argument as see()
 SceneImage ray_cast(std::span<const Shape> shapes, const PinholeView& view,
                     const Eigen::Isometry3d& camera_to_world = Eigen::Isometry3d::Identity(),
