@@ -13,10 +13,10 @@
 #include <ctime>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "asked_figures.hpp"
 #include "chip_setup.hpp"
-#include "design/chips/chip_metric.hpp"
 #include "generated_shapes.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/design/chip_search.hpp"
@@ -102,6 +102,9 @@ void prove(bool is_long, benchmarks::AskedFigures& asked) {
 void raw(benchmarks::AskedFigures& asked) {
   constexpr int chips = 9;
   const Camera camera = chip_camera(chips, 3, levels[0].point);
+  std::vector<ChipJudge> judges;
+  for (const LightLevel& level : levels)
+    judges.emplace_back(chip_camera(chips, 3, level.point), ChipSearchOptions{});
   for (const bool equal_duty : {true, false}) {
     double best[3], codes = 0;
     std::fill(best, best + 3, std::numeric_limits<double>::infinity());
@@ -115,7 +118,8 @@ void raw(benchmarks::AskedFigures& asked) {
       for (code.modulation[0] = 1; code.modulation[0] < all_chips(chips); ++code.modulation[0]) {
         ++codes;
         for (int i = 0; i < 3; ++i) {
-          const double rms_m = chip_metric_rms_m(code, camera, levels[i].point);
+          const ChipJudge& judge = judges[static_cast<std::size_t>(i)];
+          const double rms_m = judge.rms_m(judge.score(code));
           if (rms_m < best[i] * (1 - 1e-12) && !is_ambiguous(code) &&
               ambiguity_margin_sigma(code, camera, levels[i].point) >= 8.0)
             best[i] = rms_m;

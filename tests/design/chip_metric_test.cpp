@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/chips/chip_metric.hpp"
+#include "design/chips/chip_judge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include <limits>
 #include <numbers>
 
+#include "chip_setup.hpp"
 #include "core/shared/random.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 

@@ -13,7 +13,6 @@
 #include <set>
 
 #include "chip_setup.hpp"
-#include "design/chips/chip_metric.hpp"
 #include "design/chips/exhaustive_search.hpp"
 #include "each_target.hpp"
 #include "tofsmith/core/error.hpp"
@@ -54,13 +53,14 @@ void for_every_assignment(int chips, int taps, bool equal_duty,
 double raw_optimum_m(const Camera& camera, const ChipSearchOptions& options, double* codes) {
   const int chips = chips_of(camera), taps = camera.sensor.taps;
   const OperatingPoint point = camera.operating.points().front();
+  const ChipJudge judge(camera, options);
   double best = std::numeric_limits<double>::infinity();
   *codes = 0;
   for_every_assignment(chips, taps, options.equal_duty, [&](const std::vector<ChipWord>& words) {
     for (ChipWord light = 1; light < all_chips(chips); ++light) {
       ++*codes;
       const ChipCode code{chips, taps, {light}, words};
-      const double rms_m = chip_metric_rms_m(code, camera, point, options.metric);
+      const double rms_m = judge.rms_m(judge.score(code));
       if (!(rms_m < best * (1 - 1e-12)) || is_ambiguous(code)) continue;
       if (ambiguity_margin_sigma(code, camera, point, options.separation_periods) >=
           options.margin_sigma)
@@ -144,6 +144,7 @@ void expect_optimum_of_all_pairs(ChipMetric metric) {
   options.metric = metric;
   options.margin_sigma = 4.0;
   options.finalists = 1;
+  const ChipJudge judge(camera, options);
   double best = std::numeric_limits<double>::infinity();
   for_every_assignment(4, 2, true, [&](const std::vector<ChipWord>& first) {
     for_every_assignment(4, 2, true, [&](const std::vector<ChipWord>& second) {
@@ -151,7 +152,7 @@ void expect_optimum_of_all_pairs(ChipMetric metric) {
       code.demodulation.insert(code.demodulation.end(), second.begin(), second.end());
       for (code.modulation[0] = 1; code.modulation[0] < 15; ++code.modulation[0])
         for (code.modulation[1] = 1; code.modulation[1] < 15; ++code.modulation[1]) {
-          const double rms_m = chip_metric_rms_m(code, camera, low_ambient, metric);
+          const double rms_m = judge.rms_m(judge.score(code));
           if (rms_m < best * (1 - 1e-12) && !is_ambiguous(code) &&
               ambiguity_margin_sigma(code, camera, low_ambient) >= options.margin_sigma)
             best = rms_m;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "design/chips/chip_candidates.hpp"
+#include "design/chips/chip_judge.hpp"
 #include "tofsmith/design/chip_search.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
@@ -20,6 +21,26 @@ inline Camera chip_camera(int chips, int taps, const OperatingPoint& point) {
   camera.sensor.taps = taps;
   camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * chips);
   return camera;
+}
+
+/// RMS over depth of the standard deviation of the best unbiased depth estimate [m], by ChipJudge.
+inline double chip_metric_rms_m(const ChipCode& code, const Camera& camera,
+                                const OperatingPoint& point,
+                                ChipMetric metric = ChipMetric::unknown_light) {
+  Camera at_point = camera;
+  at_point.sensor.taps = code.taps;
+  at_point.operating.signal_e_per_s = {point.signal_e_per_s};
+  at_point.operating.ambient_e_per_s = {point.ambient_e_per_s};
+  const ChipJudge judge(at_point, {.exposures = code.exposures(), .metric = metric});
+  return judge.rms_m(judge.score(code));
+}
+
+/// Smallest noise-normalized distance between depths, by ChipMargin [standard deviations].
+inline double ambiguity_margin_sigma(const ChipCode& code, const Camera& camera,
+                                     const OperatingPoint& point,
+                                     double separation_periods = 1.0 / 36.0) {
+  const ChipLight light(camera, point, code.chips, code.exposures());
+  return ChipMargin(code, light, separation_periods).proven_sigma();
 }
 
 struct ComparedCode {

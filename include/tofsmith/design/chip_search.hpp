@@ -168,10 +168,10 @@ struct ChipSearchResult {
 std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures);
 
 /// Searches modulations and tap assignments on the camera's chip clock. Minimizes the geometric
-/// mean of chip_metric_rms_m() over the operating points, among unambiguous codes that keep the
-/// required margin at every point (the margin of the best standard code, if none keeps it). The
-/// search is exhaustive up to symmetry and its result proven if possible; otherwise codes are
-/// annealed without proof.
+/// mean over the operating points of the depth's standard deviation (root mean square over depth),
+/// among unambiguous codes that keep the required margin at every point (the margin of the best
+/// standard code, if none keeps it). The search is exhaustive up to symmetry and its result proven
+/// if possible; otherwise codes are annealed without proof.
 /// @throws InvalidArgument for invalid arguments, or as why_not_searchable()
 /// @note results and counts do not depend on the number of threads
 /// @see docs/exhaustive_search.md

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "code/shared/on_intervals.hpp"
-#include "design/chips/chip_metric.hpp"
+#include "design/chips/chip_margin.hpp"
 #include "design/judge.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"

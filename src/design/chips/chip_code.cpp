@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "design/chips/chip_metric.hpp"
+#include "design/chips/chip_margin.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

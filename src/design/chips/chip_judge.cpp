@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 
-#include "design/chips/chip_metric.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -62,7 +61,7 @@ void add_exposure(ChipWord modulation, const ChipWord* taps, int tap_count, cons
 }
 
 /// Returns gamma [chips^2], the mean of depth_variance() over depth; stops above `limit`.
-double mean_depth_variance(const FisherMatrix* nodes, int chips, double limit = infinity) {
+double mean_depth_variance(const FisherMatrix* nodes, int chips, double limit) {
   const double stop = limit * chips;
   double sum = 0.0;
   for (int s = 0; s < chips; ++s) {
@@ -72,14 +71,6 @@ double mean_depth_variance(const FisherMatrix* nodes, int chips, double limit = 
     if (!(sum <= stop)) break;
   }
   return sum / chips;
-}
-
-double chip_gamma(const ChipCode& code, const ChipLight& light) {
-  std::array<FisherMatrix, std::size_t{max_chips} * nodes_per_chip> nodes{};
-  for (int e = 0; e < code.exposures(); ++e)
-    add_exposure(code.modulation[static_cast<std::size_t>(e)], code.taps_of(e), code.taps, light,
-                 nodes.data());
-  return mean_depth_variance(nodes.data(), code.chips);
 }
 
 }  // namespace
@@ -118,13 +109,6 @@ FisherMatrix largest_tap_fisher(int correlation, int next, int open_chips,
           .za = light.is_known ? 0.0 : weight * slope * open,
           .sa = weight * signal * open,
           .aa = weight * open * open};
-}
-
-double chip_metric_rms_m(const ChipCode& code, const Camera& camera, const OperatingPoint& point,
-                         ChipMetric metric) {
-  code.validate();
-  const ChipLight light(camera, point, code.chips, code.exposures(), metric);
-  return light.chip_m * std::sqrt(chip_gamma(code, light));
 }
 
 ChipJudge::ChipJudge(const Camera& camera, const ChipSearchOptions& options)

@@ -36,7 +36,12 @@ class ChipJudge {
   ChipMetric metric() const { return metric_; }
   const std::vector<ChipLight>& lights() const { return lights_; }
 
-  /// Returns the geometric mean of gamma over the operating points [chips^2].
+  /// Returns the geometric mean over the operating points of the mean variance over depth of the
+  /// best unbiased depth estimate [chips^2],
+  ///   gamma = mean over z of [inverse Fisher matrix over (z, S, A)]_zz,
+  /// or, with known light, the mean of 1 / [Fisher matrix]_zz, with variances
+  /// v_i = T_e (S chi_i + A kappa_i + dark) + constant. Infinite if depth cannot be separated from
+  /// light levels.
   double score(const ChipCode& code) const;
   /// Returns score(), or any value above `limit` if the score is larger. `nodes` contains the
   /// Fisher matrices (points x 4 n) of all exposures except the last.

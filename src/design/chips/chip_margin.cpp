@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "decode/multipath/shared/bounded_quadratic.hpp"
-#include "design/chips/chip_metric.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -238,17 +237,6 @@ double ChipMargin::proven_sigma() const {
     for (int u = 0; u < chips_; ++u)
       if (least < negligible || !clears(s, 0.0, 1.0, u, least, factor)) return 0.0;
   return least < negligible ? 0.0 : std::sqrt(factor * least);
-}
-
-double ambiguity_margin_sigma(const ChipCode& code, const Camera& camera,
-                              const OperatingPoint& point, double separation_periods) {
-  code.validate();
-  require(code.measurements() <= max_chip_measurements, "measurements of ChipCode",
-          code.measurements(), "must be <= 16");
-  require(separation_periods > 0.0 && separation_periods < 0.5, "separation_periods",
-          separation_periods, "must be in (0, 1/2)");
-  const ChipLight light(camera, point, code.chips, code.exposures());
-  return ChipMargin(code, light, separation_periods).proven_sigma();
 }
 
 }  // namespace tofsmith

@@ -34,7 +34,13 @@ std::optional<BrokenRule> why_not_plain(const Camera& camera);
 
 inline constexpr int max_chip_measurements = 16;
 
-/// Whitened distances between the measurements of different depths.
+/// Returns true if two real depths can have equal measurements at suitable light levels. Exact
+/// (integers).
+bool is_ambiguous(const ChipCode& code);
+
+/// Noise-normalized distances between depths: the minimum over all depths z, z' with a circular
+/// distance of at least `separation_periods`, and over all S' >= 0 and A', of
+///   | mu(z, S, A) - mu(z', S', A') |, whitened by the variances at (z, S, A).
 class ChipMargin {
  public:
   ChipMargin(const ChipCode& code, const ChipLight& light, double separation_periods);
