@@ -77,7 +77,7 @@ CodeSet fourier_rows(int rows, const FamilyOptions& options) {
 
 std::optional<BrokenRule> histogram_rows_misfit(int rows, const FamilyOptions& options) {
   if (auto misfit = count_misfit("histogram", rows, 3, options)) return misfit;
-  if (!options.exact_grid || options.samples % rows == 0) return std::nullopt;
+  if (options.samples % rows == 0) return std::nullopt;
   return broken(
       "samples", options.samples,
       fmt::format("must be a multiple of {0} for histogram-k{0}, whose gates must not be rounded",

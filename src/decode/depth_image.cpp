@@ -37,10 +37,6 @@ std::string codes_text(const Statuses& all) {
 
 std::string_view name_of(DecodedPlane plane) { return plane_words.of(plane); }
 
-DecodedPlane parse_decoded_plane(std::string_view name) {
-  return plane_words.parse(usual_word(DecodedPlane{}, name));
-}
-
 std::string help_of(DecodedPlane plane) {
   const PlaneDescription& described = description_of(plane);
   std::string codes;

@@ -162,14 +162,6 @@ void PixelCapture::expose(double ambient_e_per_s, RandomStream& random, std::vec
     raw[i] = static_cast<float>(light[static_cast<std::size_t>(i)]);
 }
 
-void PixelCapture::operator()(double depth_m, double signal_e_per_s, double ambient_e_per_s,
-                              RandomStream& random, std::vector<double>& work, float* raw) const {
-  const double position_bin = std::isnan(depth_m) ? 0.0 : wrap(depth_m, range_m_) / bin_m_;
-  correlation_.at(position_bin, work.data());
-  for (double& value : work) value *= signal_e_per_s;
-  expose(ambient_e_per_s, random, work, raw);
-}
-
 RowCapture::RowCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
                        const CaptureOptions& options)
     : scene_(&scene), bin_m_(camera.bin_m()), options_(options), pixel_(model, camera) {

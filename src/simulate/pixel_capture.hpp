@@ -114,21 +114,18 @@ class PixelCapture {
   }
   int tap_values() const { return correlation_.tap_values(); }
 
+  /// Adds S chi of one return to `light` (tap values).
   /// @param depth_m  wraps at the range; NaN: no return, requires signal_e_per_s = 0
   /// @param work  (tap values), overwritten
-  /// @param raw  (measurements), overwritten
-  void operator()(double depth_m, double signal_e_per_s, double ambient_e_per_s,
-                  RandomStream& random, std::vector<double>& work, float* raw) const;
-
-  /// For several returns: add_light() adds S chi of one return to `light` (tap values), and
-  /// expose() exposes the sensor to the sum.
   void add_light(const FineCorrelation& correlation, double depth_m, double signal_e_per_s,
                  std::vector<double>& work, std::vector<double>& light) const;
   void add_light(double depth_m, double signal_e_per_s, std::vector<double>& work,
                  std::vector<double>& light) const {
     add_light(correlation_, depth_m, signal_e_per_s, work, light);
   }
+  /// Exposes the sensor to the sum of all returns.
   /// @param light  overwritten
+  /// @param raw  (measurements), overwritten
   void expose(double ambient_e_per_s, RandomStream& random, std::vector<double>& light,
               float* raw) const;
 

@@ -94,14 +94,6 @@ PatternMemory pattern_memory(std::span<const QuantizedWaveform> waveforms, int e
   return memory;
 }
 
-std::vector<std::int32_t> codes_of(const PatternMemory& memory, const PatternField& field) {
-  std::vector<std::int32_t> codes;
-  codes.reserve(memory.words.size());
-  for (const std::uint64_t word : memory.words)
-    codes.push_back(static_cast<std::int32_t>(word >> field.first_bit & mask_of(field.bits)));
-  return codes;
-}
-
 namespace {
 
 int hex_digits(const PatternMemory& memory) { return (memory.word_bits + 3) / 4; }

@@ -44,9 +44,6 @@ struct PatternMemory {
 PatternMemory pattern_memory(std::span<const QuantizedWaveform> waveforms, int exposures,
                              std::string comment);
 
-/// Point by point, one exposure after another.
-std::vector<std::int32_t> codes_of(const PatternMemory& memory, const PatternField& field);
-
 /// Coefficient file.
 std::string xilinx_coe(const PatternMemory& memory);
 /// Intel (Altera) memory initialization file.

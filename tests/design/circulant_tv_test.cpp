@@ -82,11 +82,11 @@ CirculantTvProblem instance(std::uint64_t item, double weight_per_sample = 2e-5,
 }
 
 void expect_solved(const CirculantTvProblem& problem, const CirculantTvResult& result) {
-  EXPECT_EQ(result.termination, Termination::converged) << result.brief();
+  EXPECT_EQ(result.termination, Termination::converged) << result.iterations;
   EXPECT_TRUE(result.is_usable());
   EXPECT_LE(result.certificate, tolerance);
   const OptimalityCertificate judged = certificate(problem, result.x);
-  EXPECT_LE(judged.violation, tolerance) << result.brief();
+  EXPECT_LE(judged.violation, tolerance) << result.iterations;
   EXPECT_LE(judged.infeasibility, 1e-12);
   EXPECT_NEAR(result.objective, problem.objective(result.x), 1e-11 * (1 + result.objective));
 }
@@ -243,12 +243,11 @@ TEST(CirculantTv, ReportsTheUseOfTheFallback) {
   const CirculantTvResult helped = solve_circulant_tv(problem, options);
   EXPECT_NE(helped.method, CirculantTvMethod::active_set);
   EXPECT_LT(helped.certificate, alone.certificate);
-  EXPECT_THAT(helped.brief(), testing::HasSubstr("admm"));
 }
 
 TEST(CirculantTv, AResultStartsAsFailure) {
   EXPECT_FALSE(CirculantTvResult{}.is_usable());
-  EXPECT_THAT(CirculantTvResult{}.brief(), testing::StartsWith("not_run"));
+  EXPECT_EQ(CirculantTvResult{}.termination, Termination::not_run);
 }
 
 // Expects that solving `problem` fails with a message that contains all `words`.
@@ -299,7 +298,7 @@ TEST(CirculantTvAdmm, AgreesWithTheActiveSetSolver) {
         random_circulant_tv(samples, item % 3 == 0 ? 2e-4 : 2e-5, item % 2 == 1, random);
     const CirculantTvResult split = solve_circulant_tv_by_admm(problem);
     const CirculantTvResult active = CirculantTvSolver(samples).solve(problem);
-    EXPECT_NEAR(split.objective, active.objective, 1e-7 * active.objective) << split.brief();
+    EXPECT_NEAR(split.objective, active.objective, 1e-7 * active.objective) << item;
     EXPECT_LE(certificate(problem, split.x).infeasibility, 1e-12);
     EXPECT_EQ(split.method, CirculantTvMethod::admm);
   }

@@ -320,13 +320,13 @@ TEST(DecodedPlanes, HaveUniqueNames) {
   std::set<std::string_view> names;
   for (const PlaneDescription& described : plane_descriptions) {
     names.insert(name_of(described.plane));
-    EXPECT_EQ(parse_decoded_plane(described.word), described.plane);
-    EXPECT_EQ(parse_decoded_plane(described.member), described.plane);
+    EXPECT_EQ(usual_word(DecodedPlane{}, described.word), name_of(described.plane));
+    EXPECT_EQ(usual_word(DecodedPlane{}, described.member), name_of(described.plane));
     EXPECT_THAT(std::string(help_of_outputs()), HasSubstr(std::string(described.help)));
   }
   EXPECT_EQ(names.size(), plane_descriptions.size());
-  EXPECT_EQ(parse_decoded_plane("amplitude"), DecodedPlane::signal);
-  EXPECT_THROW(parse_decoded_plane("depth_mm"), std::invalid_argument);
+  EXPECT_EQ(usual_word(DecodedPlane{}, "amplitude"), name_of(DecodedPlane::signal));
+  EXPECT_EQ(usual_word(DecodedPlane{}, "depth_mm"), "depth_mm");
   EXPECT_EQ(usual_planes().size(), 6u);
   EXPECT_EQ(usual_planes(true).size(), 9u);
 }

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/shared/bits.hpp"
 #include "core/shared/random.hpp"
 #include "io/shared/read_file.hpp"
 #include "waveform_readers.hpp"
@@ -78,6 +79,14 @@ TEST(PatternMemory, ReadsBackExactlyAtEveryWidth) {
     EXPECT_THAT(vhdl_package(memory),
                 testing::AllOf(HasSubstr("(0 to 31)"), HasSubstr("    31 => \"")));
   }
+}
+
+/// Point by point, one exposure after another.
+std::vector<std::int32_t> codes_of(const PatternMemory& memory, const PatternField& field) {
+  std::vector<std::int32_t> codes;
+  for (const std::uint64_t word : memory.words)
+    codes.push_back(static_cast<std::int32_t>(word >> field.first_bit & mask_of(field.bits)));
+  return codes;
 }
 
 TEST(PatternMemory, ContainsEveryOutputOfEveryExposure) {

@@ -16,7 +16,6 @@ namespace tofsmith {
 struct FamilyOptions {
   int samples = 240;         ///< N
   double peak_factor = 1e9;  ///< p = P_max / P_ave >= 1; very large: the ideal code
-  bool exact_grid = true;    ///< for histogram-kK: reject N that would round its time gates
   /// From 3 taps on, they are open one after another. For two buckets it is 1; see
   /// CodeSet::with_two_buckets().
   int taps = 1;

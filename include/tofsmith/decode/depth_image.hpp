@@ -136,8 +136,6 @@ constexpr std::string_view usual_word(DecodedPlane /*any*/, std::string_view nam
   return name;
 }
 std::string_view name_of(DecodedPlane plane);
-/// @throws InvalidArgument for other words
-DecodedPlane parse_decoded_plane(std::string_view name);
 /// Returns the help text with status codes and the methods that fill the plane.
 std::string help_of(DecodedPlane plane);
 /// @param multipath  for decoders of several returns

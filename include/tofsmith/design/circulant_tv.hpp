@@ -44,7 +44,6 @@ enum class CirculantTvMethod {
   admm,                   ///< alternating directions
   active_set_after_admm,  ///< started from ADMM's pieces
 };
-std::string_view name_of(CirculantTvMethod method);
 
 struct CirculantTvResult {
   Termination termination = Termination::not_run;
@@ -61,8 +60,6 @@ struct CirculantTvResult {
 
   /// True if converged or the certificate is at most 1e-4.
   bool is_usable() const;
-  /// "converged by active_set: objective 1.25, certificate 2e-10, ..."
-  std::string brief() const;
 };
 
 /// Structured active-set method.

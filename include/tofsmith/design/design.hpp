@@ -227,8 +227,6 @@ struct AtlasLaw {
   double bandwidth_power = 0.0, peak_power = 0.0;  ///< a and b
   double rms_residual = 0.0, max_residual = 0.0;   ///< of log error
   int entries = 0;                                 ///< fitted
-  /// Predicted error of a camera with limited bandwidth.
-  double error_m(const AtlasCamera& camera) const;
 };
 
 /// Fits the entries with limited bandwidth; none if there are fewer than 6, or all have the same

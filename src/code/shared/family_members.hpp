@@ -12,7 +12,7 @@
 namespace tofsmith {
 
 // First rule that a family member violates. If the grid does not divide the samples, the rule
-// suggests the nearest usable N, unless options.exact_grid is false.
+// suggests the nearest usable N.
 
 std::optional<BrokenRule> options_misfit(const FamilyOptions& options);
 std::optional<BrokenRule> multi_frequency_misfit(const std::vector<FrequencySteps>& frequencies,

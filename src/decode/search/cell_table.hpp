@@ -64,10 +64,6 @@ class CellTable {
   double fit_unit() const { return fit_unit_; }
   /// Maximum sum of absolute coefficients of fits of cells with one run [directions].
   double steepest_fit() const { return steepest_fit_; }
-  std::size_t bytes() const {
-    return (cells_.size() + lists_.size()) * sizeof(CellRecord) +
-           roots_.size() * sizeof(std::uint32_t);
-  }
 
   std::span<const CellRecord> runs(const double* unit) const;
 

@@ -35,11 +35,6 @@ Camera AtlasCamera::camera() const {
   return camera;
 }
 
-double AtlasLaw::error_m(const AtlasCamera& camera) const {
-  return at_ones_m * std::pow(camera.bandwidth_f0, -bandwidth_power) *
-         std::pow(camera.peak_factor, -peak_power);
-}
-
 std::vector<AtlasEntry> best_by_exposures(const std::vector<AtlasEntry>& entries) {
   std::vector<AtlasEntry> best;
   for (const AtlasEntry& entry : entries) {

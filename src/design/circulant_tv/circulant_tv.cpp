@@ -8,7 +8,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/shared/enum_words.hpp"
 #include "core/shared/periodic.hpp"
 #include "design/circulant_tv/circulant_tv_admm.hpp"
 #include "design/circulant_tv/face_minimizer.hpp"
@@ -26,10 +25,6 @@ void require_finite(const Eigen::VectorXd& values, const char* field) {
     require(std::isfinite(values[n]), fmt::format("CirculantTvProblem::{}[{}]", field, n),
             values[n], "must be finite");
 }
-
-constexpr EnumWords<CirculantTvMethod, 3> tv_method_words("CirculantTvMethod", "method",
-                                                          "active_set", "admm",
-                                                          "active_set_after_admm");
 
 }  // namespace
 
@@ -62,16 +57,8 @@ void CirculantTvOptions::validate() const {
           "must be finite and > 0");
 }
 
-std::string_view name_of(CirculantTvMethod method) { return tv_method_words.of(method); }
-
 bool CirculantTvResult::is_usable() const {
   return termination == Termination::converged || certificate <= 1e-4;
-}
-
-std::string CirculantTvResult::brief() const {
-  return fmt::format("{} by {}: objective {:.10g}, certificate {:.2g}, {} iterations, {} pieces",
-                     name_of(termination), name_of(method), objective, certificate, iterations,
-                     pieces);
 }
 
 CirculantTvResult solve_circulant_tv(const CirculantTvProblem& problem,
