@@ -144,7 +144,7 @@ nlohmann::ordered_json upload_request(const UploadArguments& arguments, const Co
             {"read_back", request.read_back},
             {"reset", request.reset},
             {"true_arb", request.true_arb},
-            {"wave_header", word_of(request.wave_header)},
+            {"wave_header", name_of(request.wave_header)},
             {"filter", arguments.filter},
             {"tables", std::move(tables)}}}};
 }

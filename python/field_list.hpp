@@ -47,7 +47,7 @@ nlohmann::ordered_json default_of_field(const Value& value) {
     for (const auto& item : value) items.push_back(default_of_field(item));
     return items;
   } else if constexpr (HasWords<Value>) {
-    return word_of(value);
+    return name_of(value);
   } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
     return value.string();
   } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/shared/enum_words.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/correction_arrays.hpp"
 #include "io/shared/read_file.hpp"
@@ -29,8 +28,6 @@ Eigen::VectorXd column_exposures_s(const Camera& camera, int columns, int column
     exposure_s[k] = camera.exposure_s.of(k / columns_per_exposure, columns / columns_per_exposure);
   return exposure_s;
 }
-
-constexpr EnumWords<ResponseArm, 3> arm_words("ResponseArm", "arm", "light", "sensor", "system");
 
 }  // namespace
 
@@ -69,8 +66,6 @@ PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames) 
     options.black_level_dn = camera.sensor.black_level_dn;
   return options;
 }
-
-ResponseArm parse_response_arm(std::string_view word) { return arm_words.parse(word); }
 
 ImpulseResponse::Kind parse_response_kind(std::string_view word) {
   using Kind = ImpulseResponse::Kind;

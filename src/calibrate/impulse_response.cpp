@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "calibrate/parametric_response.hpp"
-#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
 
@@ -241,9 +240,6 @@ Index clipped_values(const Eigen::VectorXd& values) {
   return fall > steeper * 4.0 * step ? longest : 0;
 }
 
-constexpr EnumWords<Excitation, 2> excitation_words("Excitation", "excitation",
-                                                    words_of(Excitation{}));
-
 }  // namespace
 
 void ResponseCalibrationOptions::validate() const {
@@ -251,10 +247,6 @@ void ResponseCalibrationOptions::validate() const {
           "fundamental_frequency_hz", fundamental_frequency_hz, "must be finite and > 0");
   require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
 }
-
-std::string_view name_of(Excitation excitation) { return excitation_words.of(excitation); }
-
-Excitation parse_excitation(std::string_view name) { return excitation_words.parse(name); }
 
 bool CalibratedResponse::fit_is_good() const {
   return !fits.empty() && fits.front().residual_rms * height <= 1.3 * noise_rms;

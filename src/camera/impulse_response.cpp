@@ -8,7 +8,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -41,8 +40,6 @@ std::complex<double> measured_transfer(const ImpulseResponse& response, double f
   }
   return sum / total * sinc * sinc;
 }
-constexpr EnumWords<ImpulseResponse::Kind, 5> kind_words("ImpulseResponse::Kind", "kind",
-                                                         impulse_response_kinds);
 
 }  // namespace
 
@@ -72,7 +69,5 @@ void ImpulseResponse::validate(std::string_view field) const {
   const double total = std::accumulate(samples.begin(), samples.end(), 0.0);
   require(total > 0.0, name + " sum", total, "must be > 0");
 }
-
-std::string_view name_of(ImpulseResponse::Kind kind) { return kind_words.of(kind); }
 
 }  // namespace tofsmith

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -19,10 +18,6 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-constexpr EnumWords<DistortionModel, distortion_models.size()> model_words("DistortionModel",
-                                                                           "distortion_model",
-                                                                           distortion_models);
 
 /// Distorted position and its derivative.
 struct Imaged {
@@ -164,8 +159,6 @@ Followed follow(const Formula& formula, const Vector2d& image, double first_step
 }
 
 }  // namespace
-
-std::string_view name_of(DistortionModel model) { return model_words.of(model); }
 
 Vector2d LensDistortion::distort(const Vector2d& ideal) const {
   return with_formula(*this, [&](const auto& formula) -> Vector2d {

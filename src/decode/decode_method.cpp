@@ -5,13 +5,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/shared/enum_words.hpp"
-
 namespace tofsmith {
 
 namespace {
-constexpr EnumWords<DecodeMethod, 5> method_words("DecodeMethod", "method",
-                                                  words_of(DecodeMethod{}));
 
 template <typename MethodDecoder>
 class DecoderOf final : public DepthDecoder {
@@ -48,10 +44,6 @@ class DecoderOf final : public DepthDecoder {
 };
 
 }  // namespace
-
-std::string_view name_of(DecodeMethod method) { return method_words.of(method); }
-
-DecodeMethod parse_decode_method(std::string_view name) { return method_words.parse(name); }
 
 std::unique_ptr<const DepthDecoder> make_decoder(DecodeMethod method, DecodingTable table,
                                                  const DecodeOptions& status_thresholds,

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/shared/enum_words.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -15,13 +14,6 @@
 namespace tofsmith {
 
 namespace {
-
-constexpr EnumWords<PixelStatus, all_pixel_statuses.size()> pixel_status_words(
-    "PixelStatus", "status", "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous",
-    "mixed", "inconsistent", "too_near", "too_far");
-
-constexpr EnumWords<DecodedPlane, plane_descriptions.size()> plane_words("DecodedPlane", "plane",
-                                                                         words_of(DecodedPlane{}));
 
 /// ": 0 ok, 1 invalid, ..."
 template <typename Statuses>
@@ -34,8 +26,6 @@ std::string codes_text(const Statuses& all) {
 }
 
 }  // namespace
-
-std::string_view name_of(DecodedPlane plane) { return plane_words.of(plane); }
 
 std::string help_of(DecodedPlane plane) {
   const PlaneDescription& described = description_of(plane);
@@ -81,8 +71,6 @@ DecodedView DecodedView::from(std::size_t pixel) const {
                  *this);
   return later;
 }
-
-std::string_view name_of(PixelStatus status) { return pixel_status_words.of(status); }
 
 DepthImage::DepthImage(const std::vector<DecodedPlane>& planes, int height, int width) {
   for (const DecodedPlane plane : planes)

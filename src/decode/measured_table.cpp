@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/shared/enum_words.hpp"
 #include "decode/search/smooth_curve.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "decode/table_resolution.hpp"
@@ -68,14 +67,7 @@ Eigen::VectorXd of_pairs(const Eigen::VectorXd& values, const char* field) {
   return shared;
 }
 
-constexpr EnumWords<MeasuredAmbient, 3> ambient_words("MeasuredAmbient", "ambient", "equal", "mean",
-                                                      "none");
-
 }  // namespace
-
-std::string_view name_of(MeasuredAmbient ambient) { return ambient_words.of(ambient); }
-
-MeasuredAmbient parse_measured_ambient(std::string_view name) { return ambient_words.parse(name); }
 
 Eigen::VectorXd ambient_gain_of(const Eigen::MatrixXd& correlation, MeasuredAmbient ambient) {
   if (ambient == MeasuredAmbient::mean) return correlation.colwise().mean();

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/shared/enum_words.hpp"
 #include "design/baselines.hpp"
 #include "design/chips/chip_candidates.hpp"
 #include "design/exposure_split.hpp"
@@ -55,11 +54,6 @@ DesignOptions with_effort(DesignOptions options, double effort) {
 }
 
 namespace {
-
-constexpr EnumWords<DesignMethod, 6> method_words("DesignMethod", "method",
-                                                  words_of(DesignMethod{}));
-constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
-                                                      "converged", "stalled", "iteration_limit");
 
 struct Task {
   DesignMethod method;
@@ -143,12 +137,6 @@ std::vector<Candidate> run_or_load(const Task& task, const DesignStore& store,
 }
 
 }  // namespace
-
-std::string_view name_of(Termination termination) { return termination_words.of(termination); }
-
-std::string_view name_of(DesignMethod method) { return method_words.of(method); }
-
-DesignMethod parse_design_method(std::string_view name) { return method_words.parse(name); }
 
 const Candidate* DesignResult::find(std::string_view name) const {
   for (const Candidate& c : candidates)

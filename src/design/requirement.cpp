@@ -5,7 +5,6 @@
 #include <deque>
 #include <utility>
 
-#include "core/shared/enum_words.hpp"
 #include "design/baselines.hpp"
 #include "design/judge.hpp"
 #include "design/optimize/design_problem.hpp"
@@ -17,9 +16,6 @@
 
 namespace tofsmith {
 namespace {
-
-constexpr EnumWords<CameraQuantity, 3> quantity_words("CameraQuantity", "vary", "bandwidth",
-                                                      "power", "exposure");
 
 void scale_bandwidth(ImpulseResponse& response, double factor) {
   response.f_max_hz *= factor;
@@ -297,10 +293,6 @@ RequirementMap map_of(const Camera& camera, CodePool& pool, const Progress& prog
 }
 
 }  // namespace
-
-std::string_view name_of(CameraQuantity quantity) { return quantity_words.of(quantity); }
-
-CameraQuantity parse_camera_quantity(std::string_view name) { return quantity_words.parse(name); }
 
 Camera with_scaled(Camera camera, CameraQuantity quantity, double factor) {
   require(std::isfinite(factor) && factor > 0.0, "factor", factor, "must be finite and > 0");

@@ -265,16 +265,11 @@ std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
   return axes;
 }
 
-constexpr EnumWords<SweepCombination, 2> combinations("SweepCombination", "combine", "product",
-                                                      "zip");
-
 void read_options(TableReader& table, EvaluateOptions& options) {
   for_each_field(options, [&](const auto& field) {
     using Value = std::remove_cvref_t<decltype(field.value)>;
     if constexpr (HasWords<Value>) {
-      constexpr auto words = words_of(Value{});
-      table.choice(field.name, field.value,
-                   EnumWords<Value, words.size()>(field.name, field.name, words));
+      table.choice(field.name, field.value);
     } else if constexpr (std::is_same_v<Value, std::int64_t>) {
       auto count = static_cast<std::uint64_t>(field.value);
       table.value(field.name, count);
@@ -315,7 +310,7 @@ void read_group(TableReader& table, SweepSpec& spec) {
   std::string name;
   SweepCombination combine = SweepCombination::zip;
   table.required("name", "\"optics\"").value("name", name);
-  table.required("combine", "\"product\"").choice("combine", combine, combinations);
+  table.required("combine", "\"product\"").choice("combine", combine);
   std::vector<std::string> names;
   for (const SweepAxis& axis : spec.axes)
     if (!axis.group.empty()) names.push_back(axis.group);
@@ -393,7 +388,7 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) 
   TableReader table(document, places);
   table.value("camera", spec.camera);
   table.value("set", spec.settings);
-  table.choice("combine", spec.combine, combinations);
+  table.choice("combine", spec.combine);
   read_options(table, spec.options);
   read_effort(table, spec.effort);
   read_codes(table, spec);

@@ -19,7 +19,6 @@ enum class Heat { top, bottom, both };
 constexpr std::array<std::string_view, 3> words_of(Heat /*any*/) {
   return {"top", "bottom", "both"};
 }
-std::string_view name_of(Heat heat) { return word_of(heat); }
 
 struct Oven {
   int trays = 4;

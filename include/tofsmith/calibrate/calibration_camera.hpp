@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string_view>
 
@@ -31,8 +32,13 @@ enum class ResponseArm {
   system,  ///< both arms together, stored as the response of the light
 };
 
-/// Parses "light", "sensor" or "system". @throws InvalidArgument for other words
-ResponseArm parse_response_arm(std::string_view word);
+constexpr std::array<std::string_view, 3> words_of(ResponseArm /*any*/) {
+  return {"light", "sensor", "system"};
+}
+/// @throws InvalidArgument for other words
+inline ResponseArm parse_response_arm(std::string_view word) {
+  return parse_word<ResponseArm>("arm", word);
+}
 /// Parses "file" (the measured response), "hann", "gaussian" or "lowpass" (a fit).
 /// @throws InvalidArgument for other words
 ImpulseResponse::Kind parse_response_kind(std::string_view word);

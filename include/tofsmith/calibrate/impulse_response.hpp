@@ -58,9 +58,10 @@ enum class Excitation {
 };
 
 constexpr std::array<std::string_view, 2> words_of(Excitation /*any*/) { return {"pulse", "step"}; }
-std::string_view name_of(Excitation excitation);
 /// @throws InvalidArgument for other words
-Excitation parse_excitation(std::string_view name);
+inline Excitation parse_excitation(std::string_view name) {
+  return parse_word<Excitation>("excitation", name);
+}
 
 /// Options of calibrate_impulse_response().
 struct ResponseCalibrationOptions {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tofsmith/core/field_visitor.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
 
@@ -38,15 +39,15 @@ struct ImpulseResponse {
   friend bool operator==(const ImpulseResponse&, const ImpulseResponse&) = default;
 };
 
-inline constexpr std::array<std::string_view, 5> impulse_response_kinds = {
-    "none", "hann", "gaussian", "lowpass", "file"};
-std::string_view name_of(ImpulseResponse::Kind kind);
+constexpr std::array<std::string_view, 5> words_of(ImpulseResponse::Kind /*any*/) {
+  return {"none", "hann", "gaussian", "lowpass", "file"};
+}
 
 /// Keys of [light.impulse_response] and [sensor.impulse_response].
 inline void describe(FieldVisitor& fields, ImpulseResponse& response) {
   using Kind = ImpulseResponse::Kind;
   fields.choice(Key("kind", "Shape of the impulse response").required("\"hann\"").basic(),
-                response.kind, impulse_response_kinds);
+                response.kind, words_of(Kind{}));
   const Kind kind = response.kind;
   fields.value(
       Key("f_max_hz", "Frequency at which the Hann window attenuates by a factor of 5", above(0))

@@ -83,9 +83,14 @@ constexpr std::string_view usual_word(Enum /*any*/, std::string_view name) {
   return name;
 }
 
+/// Returns the word of a value.
+/// @throws InvalidArgument if the value has no word
 template <HasWords Enum>
-constexpr std::string_view word_of(Enum value) {
-  return words_of(value).at(static_cast<std::size_t>(value));
+std::string_view name_of(Enum value) {
+  const auto words = words_of(value);
+  const auto at = static_cast<std::size_t>(value);
+  require(at < words.size(), "value", at, "must be one with a word");
+  return words[at];
 }
 
 /// @throws InvalidArgument for other words

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tofsmith/core/field_visitor.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
 
@@ -19,9 +20,9 @@ enum class DistortionModel {
   rational_6kt,  ///< Azure Kinect: radial (rational), with another tangential term
 };
 
-inline constexpr std::array<std::string_view, 3> distortion_models = {"opencv", "fisheye",
-                                                                      "rational-6kt"};
-std::string_view name_of(DistortionModel model);
+constexpr std::array<std::string_view, 3> words_of(DistortionModel /*any*/) {
+  return {"opencv", "fisheye", "rational-6kt"};
+}
 
 /// Moves image points from their ideal pinhole position. Positions are in the plane z = 1: x/z and
 /// y/z of an ideal ray, and (u - cx) / fx, (v - cy) / fy of a pixel.
@@ -64,7 +65,7 @@ struct LensDistortion {
 inline void describe(FieldVisitor& fields, LensDistortion& distortion, bool has_model = true,
                      bool has_coefficients = true, std::string_view condition = {}) {
   fields.choice(Key("distortion_model", "Formulas of the distortion").only(has_model, condition),
-                distortion.model, distortion_models);
+                distortion.model, words_of(DistortionModel{}));
   fields.value(Key("distortion",
                    "Coefficients in the order of OpenCV's calibrateCamera() or "
                    "fisheye::calibrate()",

@@ -29,9 +29,10 @@ inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMeth
 constexpr std::array<std::string_view, 5> words_of(DecodeMethod /*any*/) {
   return {"zncc", "ml", "unwrap", "two-return", "tail"};
 }
-std::string_view name_of(DecodeMethod method);
 /// @throws InvalidArgument for other words
-DecodeMethod parse_decode_method(std::string_view name);
+inline DecodeMethod parse_decode_method(std::string_view name) {
+  return parse_word<DecodeMethod>("method", name);
+}
 
 inline constexpr Help decode_method_help{
     "decoder: zncc (zero-mean normalized cross-correlation) or ml (maximum likelihood, slower) "

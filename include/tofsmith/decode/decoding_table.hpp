@@ -225,10 +225,13 @@ enum class MeasuredAmbient {
           ///< without light
   none,   ///< zero: columns are differences
 };
-
-std::string_view name_of(MeasuredAmbient ambient);
+constexpr std::array<std::string_view, 3> words_of(MeasuredAmbient /*any*/) {
+  return {"equal", "mean", "none"};
+}
 /// @throws InvalidArgument for other words
-MeasuredAmbient parse_measured_ambient(std::string_view name);
+inline MeasuredAmbient parse_measured_ambient(std::string_view name) {
+  return parse_word<MeasuredAmbient>("ambient", name);
+}
 Eigen::VectorXd ambient_gain_of(const Eigen::MatrixXd& correlation, MeasuredAmbient ambient);
 
 /// Correlation functions measured by a delay sweep. Empty lists are replaced by the camera's

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 
@@ -42,7 +43,10 @@ inline constexpr std::array all_pixel_statuses = {
     PixelStatus::mixed,     PixelStatus::inconsistent, PixelStatus::too_near,
     PixelStatus::too_far};
 
-std::string_view name_of(PixelStatus status);
+constexpr std::array<std::string_view, 10> words_of(PixelStatus /*any*/) {
+  return {"ok",        "invalid", "no_return",    "saturated", "low_signal",
+          "ambiguous", "mixed",   "inconsistent", "too_near",  "too_far"};
+}
 
 /// Number of returns in a pixel, independent of PixelStatus.
 enum class ReturnStatus : std::uint8_t {
@@ -56,7 +60,9 @@ enum class ReturnStatus : std::uint8_t {
 inline constexpr std::array all_return_statuses = {ReturnStatus::none, ReturnStatus::single,
                                                    ReturnStatus::two, ReturnStatus::unresolved};
 
-std::string_view name_of(ReturnStatus status);
+constexpr std::array<std::string_view, 4> words_of(ReturnStatus /*any*/) {
+  return {"none", "single", "two", "unresolved"};
+}
 
 /// Origin of a plane, and whether it is written by default.
 enum class PlaneUse {
@@ -135,7 +141,6 @@ constexpr std::string_view usual_word(DecodedPlane /*any*/, std::string_view nam
     if (name == described.member) return described.word;
   return name;
 }
-std::string_view name_of(DecodedPlane plane);
 /// Returns the help text with status codes and the methods that fill the plane.
 std::string help_of(DecodedPlane plane);
 /// @param multipath  for decoders of several returns
@@ -240,9 +245,10 @@ inline constexpr std::array all_mixed_pixels = {MixedPixels::label, MixedPixels:
 constexpr std::array<std::string_view, 3> words_of(MixedPixels /*any*/) {
   return {"label", "snap", "drop"};
 }
-std::string_view name_of(MixedPixels mixed);
 /// @throws InvalidArgument for other words
-MixedPixels parse_mixed_pixels(std::string_view name);
+inline MixedPixels parse_mixed_pixels(std::string_view name) {
+  return parse_word<MixedPixels>("mixed", name);
+}
 
 /// Data before filtering.
 struct UnfilteredPixels {

@@ -27,9 +27,10 @@ inline constexpr std::array all_filter_strengths = {FilterStrength::light, Filte
 constexpr std::array<std::string_view, 3> words_of(FilterStrength /*any*/) {
   return {"light", "normal", "strong"};
 }
-std::string_view name_of(FilterStrength strength);
 /// @throws InvalidArgument for an unknown name
-FilterStrength parse_filter_strength(std::string_view name);
+inline FilterStrength parse_filter_strength(std::string_view name) {
+  return parse_word<FilterStrength>("filter strength", name);
+}
 
 struct FilterOptions {
   int windows = 2;

@@ -23,9 +23,10 @@ enum class UnwrapWeights {
 constexpr std::array<std::string_view, 2> words_of(UnwrapWeights /*any*/) {
   return {"variance", "frequency"};
 }
-std::string_view name_of(UnwrapWeights weights);
 /// @throws InvalidArgument for other words
-UnwrapWeights parse_unwrap_weights(std::string_view name);
+inline UnwrapWeights parse_unwrap_weights(std::string_view name) {
+  return parse_word<UnwrapWeights>("unwrap weights", name);
+}
 
 /// Options of UnwrapDecoder.
 struct UnwrapOptions {

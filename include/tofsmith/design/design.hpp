@@ -23,8 +23,9 @@ enum class Termination {
   stalled,    ///< rounding prevents further progress
   iteration_limit,
 };
-
-std::string_view name_of(Termination termination);
+constexpr std::array<std::string_view, 4> words_of(Termination /*any*/) {
+  return {"not_run", "converged", "stalled", "iteration_limit"};
+}
 
 enum class DesignMethod {
   factorize,    ///< approximate given correlation functions, as in the paper
@@ -37,9 +38,10 @@ enum class DesignMethod {
 constexpr std::array<std::string_view, 6> words_of(DesignMethod /*any*/) {
   return {"factorize", "optimize", "search", "best", "atlas", "frequencies"};
 }
-std::string_view name_of(DesignMethod method);
 /// @throws InvalidArgument for unknown names
-DesignMethod parse_design_method(std::string_view name);
+inline DesignMethod parse_design_method(std::string_view name) {
+  return parse_word<DesignMethod>("method", name);
+}
 
 struct DesignOptions {
   DesignMethod method = DesignMethod::best;
@@ -239,9 +241,13 @@ enum class CameraQuantity {
   power,      ///< of the modulated light
   exposure,   ///< integration time
 };
-std::string_view name_of(CameraQuantity quantity);
+constexpr std::array<std::string_view, 3> words_of(CameraQuantity /*any*/) {
+  return {"bandwidth", "power", "exposure"};
+}
 /// @throws InvalidArgument for unknown names
-CameraQuantity parse_camera_quantity(std::string_view name);
+inline CameraQuantity parse_camera_quantity(std::string_view name) {
+  return parse_word<CameraQuantity>("vary", name);
+}
 
 /// Returns the camera with a quantity scaled by `factor` > 0.
 /// @throws InvalidArgument for bandwidth without a band limit

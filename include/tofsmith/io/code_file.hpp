@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 
@@ -33,6 +35,13 @@ enum class TapOrder {
   blocked,      ///< tap 0 of all exposures, then tap 1 of all exposures, ...
   interleaved,  ///< all taps of exposure 0, then all taps of exposure 1, ...
 };
+constexpr std::array<std::string_view, 2> words_of(TapOrder /*any*/) {
+  return {"blocked", "interleaved"};
+}
+/// @throws std::invalid_argument for any other word
+inline TapOrder parse_tap_order(std::string_view word) {
+  return parse_word<TapOrder>("tap order", word);
+}
 
 /// Interpretation of the columns of an NPZ file.
 struct TapLayout {
@@ -102,8 +111,5 @@ std::vector<AtlasEntry> read_atlas(const std::filesystem::path& path);
 /// @throws std::invalid_argument for a family that the camera does not support
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,
                   const CodeFileOptions& options = {});
-
-/// Parses "blocked" or "interleaved". @throws std::invalid_argument for any other word
-TapOrder parse_tap_order(std::string_view word);
 
 }  // namespace tofsmith

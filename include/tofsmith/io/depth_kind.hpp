@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "tofsmith/core/fields.hpp"
+
 namespace tofsmith {
 
 /// Distance that is written as depth.
@@ -14,9 +16,9 @@ enum class DepthKind {
 };
 
 constexpr std::array<std::string_view, 2> words_of(DepthKind /*any*/) { return {"radial", "z"}; }
-/// "radial", "z".
-std::string_view name_of(DepthKind kind);
 /// @throws std::invalid_argument for any other word
-DepthKind parse_depth_kind(std::string_view name);
+inline DepthKind parse_depth_kind(std::string_view name) {
+  return parse_word<DepthKind>("kind", name);
+}
 
 }  // namespace tofsmith

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/design/factorize.hpp"
 #include "tofsmith/io/atomic_file.hpp"
@@ -33,9 +35,11 @@ enum class TableAxes {
   samples_first,       ///< (N, K)
   measurements_first,  ///< (K, N)
 };
-
-/// Parses "nk" or "kn". @throws std::invalid_argument for any other word
-TableAxes parse_table_axes(std::string_view word);
+constexpr std::array<std::string_view, 2> words_of(TableAxes /*any*/) { return {"nk", "kn"}; }
+/// @throws std::invalid_argument for any other word
+inline TableAxes parse_table_axes(std::string_view word) {
+  return parse_word<TableAxes>("axes of the table", word);
+}
 
 /// Interpretation of a measured table.
 struct MeasuredTableOptions {

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/fields.hpp"
+
 namespace tofsmith {
 
 /// Decimal separator of the numbers in a text.
@@ -19,8 +21,10 @@ enum class DecimalMark { automatic, point, comma };
 constexpr std::array<std::string_view, 3> words_of(DecimalMark /*any*/) {
   return {"auto", "point", "comma"};
 }
-/// Parses "auto", "point" or "comma". @throws std::invalid_argument for any other word
-DecimalMark parse_decimal_mark(std::string_view word);
+/// @throws std::invalid_argument for any other word
+inline DecimalMark parse_decimal_mark(std::string_view word) {
+  return parse_word<DecimalMark>("decimal mark", word);
+}
 
 /// Constraints on the interpretation of a text.
 struct NumberTableOptions {

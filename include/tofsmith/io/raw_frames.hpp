@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/io/atomic_file.hpp"
@@ -40,10 +42,10 @@ enum class RawLayout {
 constexpr std::array<std::string_view, 2> words_of(RawLayout /*any*/) {
   return {"interleaved", "planar"};
 }
-/// Returns "interleaved" or "planar".
-std::string_view name_of(RawLayout layout);
 /// @throws std::invalid_argument for any other word
-RawLayout parse_raw_layout(std::string_view name);
+inline RawLayout parse_raw_layout(std::string_view name) {
+  return parse_word<RawLayout>("layout", name);
+}
 
 /// Options for reading a recording.
 struct RawReadOptions {

@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/shared/enum_words.hpp"
 #include "decode/filter/shared/filter_parts.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/shared/marked_raw.hpp"
@@ -18,15 +17,6 @@
 #include "tofsmith/core/statistics.hpp"
 
 namespace tofsmith {
-
-namespace {
-constexpr EnumWords<FilterStrength, 3> strength_words("FilterStrength", "filter strength",
-                                                      words_of(FilterStrength{}));
-}  // namespace
-
-std::string_view name_of(FilterStrength strength) { return strength_words.of(strength); }
-
-FilterStrength parse_filter_strength(std::string_view name) { return strength_words.parse(name); }
 
 FilterOptions FilterOptions::of(FilterStrength strength) {
   FilterOptions options;

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "core/shared/enum_words.hpp"
 #include "decode/mixed/mixed_pixel_fit.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
@@ -23,9 +22,6 @@
 namespace tofsmith {
 
 namespace {
-
-constexpr EnumWords<MixedPixels, all_mixed_pixels.size()> mixed_words("MixedPixels", "mixed",
-                                                                      words_of(MixedPixels{}));
 
 constexpr int reach = 4;
 constexpr int window_pixels = (2 * reach + 1) * (2 * reach + 1);
@@ -369,10 +365,6 @@ void check(const DecodingTable& table, const RawView& raw, const DecodedView& de
 }
 
 }  // namespace
-
-std::string_view name_of(MixedPixels mixed) { return mixed_words.of(mixed); }
-
-MixedPixels parse_mixed_pixels(std::string_view name) { return mixed_words.parse(name); }
 
 std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& stored, MixedPixels mixed,
                                const DecodedView& decoded, const PixelMaps& maps,

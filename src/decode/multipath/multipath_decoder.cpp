@@ -6,20 +6,12 @@
 
 #include <string>
 
-#include "core/shared/enum_words.hpp"
 #include "decode/multipath/multipath_engine.hpp"
 #include "decode/search/nearest_bins.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
-
-namespace {
-constexpr EnumWords<ReturnStatus, 4> return_status_words("ReturnStatus", "returns", "none",
-                                                         "single", "two", "unresolved");
-}  // namespace
-
-std::string_view name_of(ReturnStatus status) { return return_status_words.of(status); }
 
 void MultipathOptions::validate(double range_m) const {
   const std::string of_range = " the range, " + fmt::format("{:f}", range_m) + " m";

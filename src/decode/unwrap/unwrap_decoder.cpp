@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "core/shared/decompositions.hpp"
-#include "core/shared/enum_words.hpp"
 #include "core/shared/periodic.hpp"
 #include "decode/output/lobe_posterior.hpp"
 #include "decode/output/pixel_output.hpp"
@@ -202,14 +201,7 @@ std::vector<double> weights_of(const PhaseModel& phases, int measurements, Unwra
   return weights;
 }
 
-constexpr EnumWords<UnwrapWeights, 2> weights_words("UnwrapWeights", "unwrap weights",
-                                                    words_of(UnwrapWeights{}));
-
 }  // namespace
-
-std::string_view name_of(UnwrapWeights weights) { return weights_words.of(weights); }
-
-UnwrapWeights parse_unwrap_weights(std::string_view name) { return weights_words.parse(name); }
 
 void UnwrapOptions::validate() const {
   status_thresholds.validate();

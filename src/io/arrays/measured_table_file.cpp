@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/shared/enum_words.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/arrays/shared/correction_arrays.hpp"
 #include "io/shared/read_file.hpp"
@@ -167,8 +166,6 @@ void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::stri
   table = table.in_order(source);
 }
 
-constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "nk", "kn");
-
 }  // namespace
 
 Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path) {
@@ -193,8 +190,6 @@ TargetSet load_target(const std::string& name_or_path, const Camera& camera, boo
   require(!normalize, "normalize", "true", "is only valid with a target that is a table");
   return targets_of(load_code(name_or_path, ideal_camera(camera)).resampled(camera.samples));
 }
-
-TableAxes parse_table_axes(std::string_view word) { return axes_words.parse(word); }
 
 bool is_measured_table(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);

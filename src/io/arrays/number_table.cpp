@@ -14,7 +14,6 @@
 #include <set>
 #include <tuple>
 
-#include "core/shared/enum_words.hpp"
 #include "core/shared/text_numbers.hpp"
 #include "io/arrays/shared/sample_times.hpp"
 #include "io/shared/read_file.hpp"
@@ -358,12 +357,7 @@ std::string lower_cased(std::string_view text) {
   return lower;
 }
 
-constexpr EnumWords<DecimalMark, 3> mark_words("DecimalMark", "decimal mark",
-                                               words_of(DecimalMark{}));
-
 }  // namespace
-
-DecimalMark parse_decimal_mark(std::string_view word) { return mark_words.parse(word); }
 
 bool is_measured(double number) {
   constexpr double least_code = 9.89e37;  // below 9.9e37, to allow for rounding

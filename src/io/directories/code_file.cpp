@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "core/shared/enum_words.hpp"
 #include "core/shared/text_numbers.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/shared/read_file.hpp"
@@ -36,8 +35,6 @@ std::string near_family(const std::string& name) {
     near = without_number(near) + number;
   return fmt::format("; did you mean {}?", near);
 }
-
-constexpr EnumWords<TapOrder, 2> tap_order_words("TapOrder", "tap order", "blocked", "interleaved");
 
 }  // namespace
 
@@ -89,7 +86,5 @@ CodeSet load_code(const std::string& name_or_path, const Camera& camera,
   if (reads_rows && lower_extension(name_or_path) == ".npz") return read_rows(name_or_path);
   return read_code(name_or_path, layout);
 }
-
-TapOrder parse_tap_order(std::string_view word) { return tap_order_words.parse(word); }
 
 }  // namespace tofsmith

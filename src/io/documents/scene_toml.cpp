@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -61,8 +62,7 @@ Eigen::Matrix3d read_rotation(TableReader& table) {
 
 void read_texture_fields(TableReader& table, Texture& texture) {
   using Pattern = Texture::Pattern;
-  constexpr EnumWords<Pattern, 3> patterns("Texture::Pattern", "pattern", "uniform", "checker",
-                                           "stripes");
+  constexpr std::array<std::string_view, 3> patterns = {"uniform", "checker", "stripes"};
   const bool is_image = table.contains("image");
   if (is_image) {
     table.refuse({"pattern", "other_albedo"}, "a pattern instead of an image");
@@ -76,7 +76,8 @@ void read_texture_fields(TableReader& table, Texture& texture) {
     });
   } else {
     table.refuse({"linear"}, "image");
-    table.required("pattern", "\"checker\"").choice("pattern", texture.pattern, patterns);
+    if (const auto at = table.required("pattern", "\"checker\"").word("pattern", patterns))
+      texture.pattern = static_cast<Pattern>(*at);
   }
   read_share(table, "albedo", texture.albedo);
   if (texture.pattern == Pattern::uniform) {

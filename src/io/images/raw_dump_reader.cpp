@@ -10,7 +10,6 @@
 #include <memory>
 #include <utility>
 
-#include "core/shared/enum_words.hpp"
 #include "io/image_limits.hpp"
 #include "io/input_file.hpp"
 #include "tofsmith/core/error.hpp"
@@ -100,8 +99,6 @@ void check_markers(const RawMarkers& markers, const std::optional<NumberRange>& 
     }
 }
 
-constexpr EnumWords<RawLayout, 2> layout_words("RawLayout", "layout", words_of(RawLayout{}));
-
 }  // namespace
 
 RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
@@ -162,10 +159,6 @@ void check_markers(const RawMarkers& markers, const RawFormat& format, const std
                             format.bits),
                 file);
 }
-
-std::string_view name_of(RawLayout layout) { return layout_words.of(layout); }
-
-RawLayout parse_raw_layout(std::string_view name) { return layout_words.parse(name); }
 
 namespace {
 

@@ -12,7 +12,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/shared/enum_words.hpp"
 #include "io/images/depth_kind_fields.hpp"
 #include "io/images/exr.hpp"
 #include "tofsmith/core/error.hpp"
@@ -57,12 +56,6 @@ void Undistortion::turn_radial(Image<float>& depth_m) const {
   for (std::size_t i = 0; i < radial_ratio_.size(); ++i) depth_m.pixels[i] *= radial_ratio_[i];
 }
 
-namespace {
-
-constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", words_of(DepthKind{}));
-
-}  // namespace
-
 std::string_view help_of_outputs() {
   static const std::string text = [] {
     std::string all = "planes to write; others are not computed";
@@ -75,10 +68,6 @@ std::string_view help_of_outputs() {
   }();
   return text;
 }
-
-std::string_view name_of(DepthKind kind) { return kind_words.of(kind); }
-
-DepthKind parse_depth_kind(std::string_view name) { return kind_words.parse(name); }
 
 NpyType type_of(DecodedPlane plane) {
   static const DepthImage types;

@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith {
@@ -96,9 +96,9 @@ class TableReader {
 
   /// Returns the index of the word; none if the key is missing.
   std::optional<std::size_t> word(std::string_view key, std::span<const std::string_view> words);
-  template <typename Enum, std::size_t Count>
-  void choice(std::string_view key, Enum& target, const EnumWords<Enum, Count>& words) {
-    if (const auto index = word(key, words.all())) target = static_cast<Enum>(*index);
+  template <HasWords Enum>
+  void choice(std::string_view key, Enum& target) {
+    if (const auto index = word(key, words_of(Enum{}))) target = static_cast<Enum>(*index);
   }
 
   /// Accepts NaN and infinity: nan, inf, -inf, or these words in quotes.
