@@ -31,6 +31,7 @@
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
+#include "tofsmith/decode/depth_decoder.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/decode/depth_limits.hpp"
 #include "tofsmith/decode/filter.hpp"

@@ -93,7 +93,6 @@ Decoder::Decoder(Decoder&&) noexcept = default;
 Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 
 const DecodingTable& Decoder::table() const { return plan_->table; }
-const DecodeOptions& Decoder::options() const { return plan_->options; }
 int Decoder::rank() const { return plan_->model.rank(); }
 
 DecoderParts parts_of(const Decoder& decoder) {
@@ -108,9 +107,9 @@ void Decoder::decode_bins(const float* measurements, std::int64_t pixels, std::i
 
 void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                                 double* depth_bin) const {
-  const int rank = this->rank();
+  const int rank = this->rank(), count = this->measurements();
   for_each_tile(
-      plan_->matcher, column_of(measurements, pixels, this->measurements()), {0, pixels}, true,
+      plan_->matcher, column_of(measurements, pixels, count), {0, pixels}, true,
       [&](const PixelTile& tile, std::int64_t first) {
         std::array<double, max_measurements> raw;
         PlaneVector plane;
@@ -118,7 +117,7 @@ void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
           double& position = depth_bin[first + i];
           position = std::numeric_limits<double>::quiet_NaN();
           if (tile.bin[i] < 0) continue;
-          for (int k = 0; k < this->measurements(); ++k)
+          for (int k = 0; k < count; ++k)
             raw[static_cast<std::size_t>(k)] = tile.raw[k * pixels_per_tile + i];
           plan_->matcher.bins().exact().project(raw.data(), plane);
           for (int j = 0; j < rank; ++j) plane.unit[static_cast<std::size_t>(j)] *= plane.length;
@@ -128,12 +127,21 @@ void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
       });
 }
 
-void Decoder::decode(const RawView& stored, const DecodedView& decoded,
-                     const Progress& progress) const {
+void Decoder::decode_pixels(const RawView& stored, const RangePart* parts,
+                            const DecodedView& decoded, const Progress& progress) const {
   const MarkedRaw marked(stored, plan_->table.marking);
   const RawView& raw = marked.view();
+  const int count = measurements();
+  if (parts)
+    return decode_frame(raw, decoded, count, progress,
+                        [&](const RawBlock& block, const DecodedView& planes) {
+                          for (std::int64_t i = 0; i < block.pixels; ++i)
+                            plan_->decode_within(block.values + i * count, block.variance_share(i),
+                                                 block.noise_of(i), parts[block.first + i],
+                                                 static_cast<std::size_t>(i), planes);
+                        });
   const bool is_bin_enough = decoded.wants_bins_only();
-  for_each_block(raw, measurements(), progress, [&](IndexRange block) {
+  for_each_block(raw, count, progress, [&](IndexRange block) {
     const auto write_bins = [&](const PixelTile& tile, std::int64_t first) {
       plan_->write_bins(tile, decoded.bin + first);
     };
@@ -145,23 +153,6 @@ void Decoder::decode(const RawView& stored, const DecodedView& decoded,
     // The best chords determine the planes; their rows may differ from the best bins.
     if (is_bin_enough || (decoded.bin && plan_->matcher.is_coarse()))
       for_each_tile(plan_->matcher, raw, block, false, write_bins);
-  });
-}
-
-void Decoder::decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
-                            const Progress& progress) const {
-  decode_frame(MarkedRaw(raw, table().marking).view(), decoded, measurements(), progress,
-               [&](const RawBlock& block, const DecodedView& planes) {
-                 for (std::int64_t i = 0; i < block.pixels; ++i)
-                   plan_->decode_within(block.values + i * measurements(), block.variance_share(i),
-                                        block.noise_of(i), parts[block.first + i],
-                                        static_cast<std::size_t>(i), planes);
-               });
-}
-
-DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
-  return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
-    decode(view, decoded, progress);
   });
 }
 

@@ -6,11 +6,7 @@
 #include <memory>
 
 #include "tofsmith/core/fields.hpp"
-#include "tofsmith/core/image.hpp"
-#include "tofsmith/core/progress.hpp"
-#include "tofsmith/decode/decoding_table.hpp"
-#include "tofsmith/decode/depth_image.hpp"
-#include "tofsmith/decode/range_part.hpp"
+#include "tofsmith/decode/depth_decoder.hpp"
 
 namespace tofsmith {
 
@@ -49,66 +45,51 @@ auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
 /// chords (straight lines) to both adjacent rows. The bin always equals the result of double
 /// precision arithmetic, for any type of the raw numbers, processor and number of threads.
 ///
+/// Planes of decode(), with the same bits on every processor:
+///   bin: as decode_bins();
+///   signal and ambient: least squares fit of y' to x(z_hat) and a;
+///   deviation: noise of the estimated light, propagated through the least squares problem in (z,
+///     S, A). Chords use the noise at the middle of the estimate's quarter;
+///   confidence: posterior probability of the main lobe, the run of bins around the best one
+///     along which the noiseless score decreases, up to 5 % of the range to either side. It is 1
+///     if a bound proves that all other depths have at most about 1e-3;
+///   residual: chi-square of the measurements per degree of freedom;
+///   status: see PixelStatus. Measurements without the ambient component below 1e-12 of sum_i
+///     |y'_i| count as 0: the pixel is no_return.
+/// All planes except `bin` are computed in single precision: rounding errors are about 1e-7 /
+/// (angle between adjacent bins) bins of depth, and 1e-6 of the brightest measurement for signal
+/// and ambient light. Pixels that are invalid or have no return are NaN in all planes of floats;
+/// the bin is -1 only for invalid pixels.
+///
 /// Immutable and thread-safe.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 3; deviates: projects out ambient, not the mean
 /// @see docs/decoding.md
-class Decoder {
+class Decoder final : public DepthDecoder {
  public:
   /// @throws InvalidArgument for invalid arguments
   explicit Decoder(DecodingTable table, const DecodeOptions& options = {});
-  ~Decoder();
+  ~Decoder() override;
   Decoder(Decoder&&) noexcept;
   Decoder& operator=(Decoder&&) noexcept;
 
-  const DecodingTable& table() const;
-  const DecodeOptions& options() const;
-  int measurements() const { return table().measurements(); }
-  int samples() const { return table().bin_count(); }
+  DecodeMethod method() const override { return DecodeMethod::zncc; }
+  const DecodingTable& table() const override;
   /// Dimension of the space that P x(z) spans, 2 to K.
   int rank() const;
+  const Decoder* correlation_decoder() const override { return this; }
 
-  /// Decodes one frame on all threads into the caller's planes. Allocates no planes.
-  ///   bin: as decode_bins();
-  ///   signal and ambient: least squares fit of y' to x(z_hat) and a;
-  ///   deviation: noise of the estimated light, propagated through the least squares problem in (z,
-  ///     S, A). Chords use the noise at the middle of the estimate's quarter;
-  ///   confidence: posterior probability of the main lobe, the run of bins around the best one
-  ///     along which the noiseless score decreases, up to 5 % of the range to either side. It is 1
-  ///     if a bound proves that all other depths have at most about 1e-3;
-  ///   residual: chi-square of the measurements per degree of freedom;
-  ///   status: see PixelStatus. Measurements without the ambient component below 1e-12 of sum_i
-  ///     |y'_i| count as 0: the pixel is no_return.
-  /// All planes except `bin` are computed in single precision: rounding errors are about 1e-7 /
-  /// (angle between adjacent bins) bins of depth, and 1e-6 of the brightest measurement for signal
-  /// and ambient light. Pixels that are invalid or have no return are NaN in all planes of floats;
-  /// the bin is -1 only for invalid pixels.
-  /// @param raw      electrons or counts, with as many measurements as the table
-  /// @param decoded  of the same size; null planes are skipped
-  /// @throws InvalidArgument if the shape does not match
-  /// @note the same bits for any number of threads, layout and processor
-  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// As decode(), with only the maxima of the correlation (in other methods: minima of the cost)
-  /// within part of the range as candidates, so that depths do not accumulate at its ends. Depths
-  /// outside are assumed to be 100 times less frequent. Pixels without a candidate, or outside with
-  /// a probability of at least 0.9, are no_return.
-  /// @param parts  one per pixel
-  void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
-                     const Progress& progress = {}) const;
-  /// Decodes frame `frame` of a stack into a new image.
-  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
-
-  /// Computes positions in [0, N) in double precision, also for scores that are not positive, for
-  /// Monte Carlo loops.
-  /// @param measurements  raw numbers (pixels, K)
-  /// @param depth_bin     (pixels); NaN if a measurement is NaN or infinite
-  /// @note single-threaded; allocates nothing
-  void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
+  /// Allocates nothing. Also for scores that are not positive.
+  void decode_depth_bins(const float* measurements, std::int64_t pixels,
+                         double* depth_bin) const override;
   /// Computes the best bins in [0, N), not always nearest to the refined position; -1 if a
   /// measurement is NaN or infinite.
-  void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
+  void decode_bins(const float* measurements, std::int64_t pixels,
+                   std::int32_t* bin) const override;
 
  private:
   friend DecoderParts parts_of(const Decoder& decoder);
+  void decode_pixels(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                     const Progress& progress) const override;
 
   struct Plan;
   std::unique_ptr<const Plan> plan_;

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "tofsmith/core/image.hpp"
-#include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {
@@ -25,40 +23,33 @@ namespace tofsmith {
 /// ZNCC estimate, has a local optimum. Iteratively reweighted least squares, in which the variance
 /// is not part of the fit, is up to 2 % worse (ramps).
 ///
+/// Planes of decode() are as from Decoder, except for
+///   signal and ambient: the most likely ones;
+///   deviation: from the Fisher information on (z, S, A) at the estimate, without the constraint
+///     A >= 0, so it may be too large in the dark;
+///   confidence: posterior probability of the main lobe around the most likely depth, with the
+///     noise at the initial estimate.
+///
 /// Immutable and thread-safe.
 /// @see docs/decoding.md
-class LikelihoodDecoder {
+class LikelihoodDecoder final : public DepthDecoder {
  public:
   /// @throws InvalidArgument for invalid arguments
   explicit LikelihoodDecoder(DecodingTable table, const DecodeOptions& options = {});
-  ~LikelihoodDecoder();
+  ~LikelihoodDecoder() override;
   LikelihoodDecoder(LikelihoodDecoder&&) noexcept;
   LikelihoodDecoder& operator=(LikelihoodDecoder&&) noexcept;
 
-  const DecodingTable& table() const;
-  const DecodeOptions& options() const;
-  int measurements() const { return table().measurements(); }
-  int samples() const { return table().bin_count(); }
-
-  /// Decodes one frame as Decoder::decode(), except for
-  ///   signal and ambient: the most likely ones;
-  ///   deviation: from the Fisher information on (z, S, A) at the estimate, without the constraint
-  ///     A >= 0, so it may be too large in the dark;
-  ///   confidence: posterior probability of the main lobe around the most likely depth, with the
-  ///     noise at the initial estimate.
-  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// See Decoder.
-  void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
-                     const Progress& progress = {}) const;
-  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
-
-  /// See Decoder::decode_depth_bins().
-  /// @note single-threaded; allocates N numbers per call, nothing per pixel
-  void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
-  /// Nearest bins in [0, N); -1 if a measurement is NaN or infinite.
-  void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
+  DecodeMethod method() const override { return DecodeMethod::ml; }
+  const DecodingTable& table() const override;
+  /// Allocates N numbers per call.
+  void decode_depth_bins(const float* measurements, std::int64_t pixels,
+                         double* depth_bin) const override;
 
  private:
+  void decode_pixels(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                     const Progress& progress) const override;
+
   struct Plan;
   std::unique_ptr<const Plan> plan_;
 };

@@ -6,10 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "tofsmith/core/image.hpp"
-#include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 
@@ -56,52 +53,43 @@ auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
       Field("status_thresholds", o.status_thresholds, Help{"thresholds of the single return"}));
 }
 
+class MultipathEngine;
+enum class MultipathKind;
+
 /// Base class of TwoReturnDecoder and TailDecoder. Fits later light if one return does not explain
 /// the pixel.
 ///
+/// Single and unresolved pixels are decoded as by Decoder. For pixels with multipath,
+///   depth, signal: of the direct return; ambient light: fitted together with both returns;
+///   deviation: from the Fisher information on (z, delta, S1, S2, A), without the constraint S1
+///     >= S2;
+///   confidence: posterior probability of the best fit against the best fit at another direct
+///     depth;
+///   delay, ratio: of the second return or of the tail; NaN without one;
+///   returns: ReturnStatus; PixelStatus is the same as from Decoder.
+/// With a prior, depth and deviation are computed from the posterior unless one return explains the
+/// pixel. The last bits differ on processors without fused multiply-add.
+///
 /// Immutable and thread-safe.
-class MultipathDecoder {
+class MultipathDecoder : public DepthDecoder {
  public:
-  ~MultipathDecoder();
+  ~MultipathDecoder() override;
   MultipathDecoder(MultipathDecoder&&) noexcept;
   MultipathDecoder& operator=(MultipathDecoder&&) noexcept;
 
-  const DecodingTable& table() const;
-  const MultipathOptions& options() const;
-  int measurements() const { return table().measurements(); }
-  int samples() const { return table().bin_count(); }
-
-  /// Decodes one frame on all threads into the caller's planes. Single and unresolved pixels are
-  /// decoded as by Decoder::decode(). For pixels with multipath,
-  ///   depth, signal: of the direct return; ambient light: fitted together with both returns;
-  ///   deviation: from the Fisher information on (z, delta, S1, S2, A), without the constraint S1
-  ///     >= S2;
-  ///   confidence: posterior probability of the best fit against the best fit at another direct
-  ///     depth;
-  ///   delay, ratio: of the second return or of the tail; NaN without one;
-  ///   returns: ReturnStatus; PixelStatus is the same as from Decoder.
-  /// With a prior, depth and deviation are computed from the posterior unless one return explains
-  /// the pixel.
-  /// @throws InvalidArgument if the shape does not match
-  /// @note the same bits for any number of threads; the last bits differ on processors without
-  ///       fused multiply-add
-  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// See Decoder.
-  void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
-                     const Progress& progress = {}) const;
-  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
-
-  /// See Decoder::decode_depth_bins(). NaN without a return.
-  void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
-  /// Nearest bins in [0, N); -1 without a return.
-  void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
+  DecodeMethod method() const override;
+  const DecodingTable& table() const override;
+  void decode_depth_bins(const float* measurements, std::int64_t pixels,
+                         double* depth_bin) const override;
 
  protected:
-  struct Plan;
-  explicit MultipathDecoder(std::unique_ptr<const Plan> plan);
+  MultipathDecoder(DecodingTable table, const MultipathOptions& options, MultipathKind later);
 
  private:
-  std::unique_ptr<const Plan> plan_;
+  void decode_pixels(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                     const Progress& progress) const override;
+
+  std::unique_ptr<const MultipathEngine> engine_;
 };
 
 /// Decodes the direct depth of pixels whose return is followed by an exponential tail, as in haze:

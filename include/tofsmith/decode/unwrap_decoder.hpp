@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/core/image.hpp"
-#include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {
@@ -50,44 +49,37 @@ struct UnwrapOptions {
 /// Frequencies and phase offsets are determined from the correlation functions, so that delay and
 /// attenuation of the camera are compensated. Amplitudes are ignored.
 ///
+/// Planes of decode() are as from Decoder, except for
+///   deviation: noise at the estimate, propagated through phases and weights;
+///   confidence: posterior probability of the main lobe around the depth of the chosen wraps,
+///     from all measurements.
+///
 /// Immutable and thread-safe.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 5, which compares with this decoder
-class UnwrapDecoder {
+class UnwrapDecoder final : public DepthDecoder {
  public:
   /// @throws InvalidArgument if the table or the options are invalid, a correlation function is not
   ///         a sinusoid, a frequency is measured in fewer than two phases, the offset cannot be
   ///         determined, or the frequencies have a common divisor
   explicit UnwrapDecoder(DecodingTable table, const UnwrapOptions& options = {});
-  ~UnwrapDecoder();
+  ~UnwrapDecoder() override;
   UnwrapDecoder(UnwrapDecoder&&) noexcept;
   UnwrapDecoder& operator=(UnwrapDecoder&&) noexcept;
 
-  const DecodingTable& table() const;
-  const UnwrapOptions& options() const;
-  int measurements() const { return table().measurements(); }
-  int samples() const { return table().bin_count(); }
+  DecodeMethod method() const override { return DecodeMethod::unwrap; }
+  const DecodingTable& table() const override;
   /// In multiples of f0, ascending.
   const std::vector<int>& frequencies() const;
   /// w_f, with sum 1.
   const std::vector<double>& weights() const;
-
-  /// Decodes one frame as Decoder::decode(), except for
-  ///   deviation: noise at the estimate, propagated through phases and weights;
-  ///   confidence: posterior probability of the main lobe around the depth of the chosen wraps,
-  ///     from all measurements.
-  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
-  /// See Decoder.
-  void decode_within(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
-                     const Progress& progress = {}) const;
-  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
-
-  /// See Decoder::decode_depth_bins().
-  /// @note single-threaded; allocates nothing
-  void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
-  /// Nearest bins in [0, N); -1 if a measurement is NaN or infinite.
-  void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
+  /// Allocates nothing.
+  void decode_depth_bins(const float* measurements, std::int64_t pixels,
+                         double* depth_bin) const override;
 
  private:
+  void decode_pixels(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
+                     const Progress& progress) const override;
+
   struct Plan;
   std::unique_ptr<const Plan> plan_;
 };

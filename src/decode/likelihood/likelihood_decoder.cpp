@@ -339,8 +339,6 @@ struct LikelihoodDecoder::Plan {
     return std::vector<double>(static_cast<std::size_t>(table.samples()));
   }
   double decode_depth_bin(const float* raw, std::vector<double>& fall) const;
-  void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
-              const Progress& progress) const;
   void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
                     const RangePart* part, std::size_t at, const DecodedView& decoded,
                     std::vector<double>& fall) const;
@@ -360,49 +358,27 @@ LikelihoodDecoder::LikelihoodDecoder(LikelihoodDecoder&&) noexcept = default;
 LikelihoodDecoder& LikelihoodDecoder::operator=(LikelihoodDecoder&&) noexcept = default;
 
 const DecodingTable& LikelihoodDecoder::table() const { return plan_->table; }
-const DecodeOptions& LikelihoodDecoder::options() const { return plan_->options; }
 
 void LikelihoodDecoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                                           double* depth_bin) const {
   std::vector<double> fall = plan_->work_space();
+  const int count = this->measurements();
   for (std::int64_t i = 0; i < pixels; ++i)
-    depth_bin[i] = plan_->decode_depth_bin(measurements + i * this->measurements(), fall);
+    depth_bin[i] = plan_->decode_depth_bin(measurements + i * count, fall);
 }
 
-void LikelihoodDecoder::decode_bins(const float* measurements, std::int64_t pixels,
-                                    std::int32_t* bin) const {
-  nearest_bins(*this, measurements, pixels, bin);
-}
-
-void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,
-                               const Progress& progress) const {
-  plan_->decode(raw, nullptr, decoded, progress);
-}
-
-void LikelihoodDecoder::decode_within(const RawView& raw, const RangePart* parts,
+void LikelihoodDecoder::decode_pixels(const RawView& raw, const RangePart* parts,
                                       const DecodedView& decoded, const Progress& progress) const {
-  plan_->decode(raw, parts, decoded, progress);
-}
-
-DepthImage LikelihoodDecoder::decode(const RawFrames& raw, int frame,
-                                     const Progress& progress) const {
-  return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
-    decode(view, decoded, progress);
-  });
-}
-
-void LikelihoodDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
-                                     const DecodedView& decoded, const Progress& progress) const {
   constexpr std::int64_t block_pixels = usual_block_pixels / 16;
-  const int count = table.measurements();
+  const int count = measurements();
   decode_frame(
-      MarkedRaw(raw, table.marking).view(), decoded, count, progress,
+      MarkedRaw(raw, table().marking).view(), decoded, count, progress,
       [&](const RawBlock& block, const DecodedView& planes) {
-        std::vector<double> fall = work_space();
+        std::vector<double> fall = plan_->work_space();
         for (std::int64_t i = 0; i < block.pixels; ++i)
-          decode_pixel(block.values + i * count, block.variance_share(i), block.noise_of(i),
-                       parts ? parts + block.first + i : nullptr, static_cast<std::size_t>(i),
-                       planes, fall);
+          plan_->decode_pixel(block.values + i * count, block.variance_share(i), block.noise_of(i),
+                              parts ? parts + block.first + i : nullptr,
+                              static_cast<std::size_t>(i), planes, fall);
       },
       block_pixels);
 }

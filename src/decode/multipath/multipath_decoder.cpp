@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 
 #include "decode/multipath/multipath_engine.hpp"
-#include "decode/search/nearest_bins.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 
@@ -27,22 +26,18 @@ void MultipathOptions::validate(double range_m) const {
   if (prior) check_fields(*prior, "ReturnPrior::");
 }
 
-struct MultipathDecoder::Plan {
-  MultipathEngine engine;
-};
-
-MultipathDecoder::MultipathDecoder(std::unique_ptr<const Plan> plan) : plan_(std::move(plan)) {}
+MultipathDecoder::MultipathDecoder(DecodingTable table, const MultipathOptions& options,
+                                   MultipathKind later)
+    : engine_(std::make_unique<const MultipathEngine>(std::move(table), options, later)) {}
 MultipathDecoder::~MultipathDecoder() = default;
 MultipathDecoder::MultipathDecoder(MultipathDecoder&&) noexcept = default;
 MultipathDecoder& MultipathDecoder::operator=(MultipathDecoder&&) noexcept = default;
 
 TwoReturnDecoder::TwoReturnDecoder(DecodingTable table, const MultipathOptions& options)
-    : MultipathDecoder(std::make_unique<const Plan>(
-          Plan{MultipathEngine(std::move(table), options, MultipathKind::second_return)})) {}
+    : MultipathDecoder(std::move(table), options, MultipathKind::second_return) {}
 
 TailDecoder::TailDecoder(DecodingTable table, const MultipathOptions& options)
-    : MultipathDecoder(std::make_unique<const Plan>(
-          Plan{MultipathEngine(std::move(table), options, MultipathKind::tail)})) {}
+    : MultipathDecoder(std::move(table), options, MultipathKind::tail) {}
 
 namespace {
 
@@ -62,34 +57,20 @@ std::optional<std::string> TailDecoder::why_not_decodable(const DecodingTable& t
   return why_not(table, MultipathKind::tail);
 }
 
-const DecodingTable& MultipathDecoder::table() const { return plan_->engine.table(); }
-const MultipathOptions& MultipathDecoder::options() const { return plan_->engine.options(); }
-
-void MultipathDecoder::decode(const RawView& raw, const DecodedView& decoded,
-                              const Progress& progress) const {
-  plan_->engine.decode(raw, nullptr, decoded, progress);
+DecodeMethod MultipathDecoder::method() const {
+  return engine_->kind() == MultipathKind::tail ? DecodeMethod::tail : DecodeMethod::two_return;
 }
 
-void MultipathDecoder::decode_within(const RawView& raw, const RangePart* parts,
+const DecodingTable& MultipathDecoder::table() const { return engine_->table(); }
+
+void MultipathDecoder::decode_pixels(const RawView& raw, const RangePart* parts,
                                      const DecodedView& decoded, const Progress& progress) const {
-  plan_->engine.decode(raw, parts, decoded, progress);
-}
-
-DepthImage MultipathDecoder::decode(const RawFrames& raw, int frame,
-                                    const Progress& progress) const {
-  DepthImage image(usual_planes(true), raw.height, raw.width);
-  decode(view_of_frame(raw, frame), DecodedView::of(image), progress);
-  return image;
+  engine_->decode(raw, parts, decoded, progress);
 }
 
 void MultipathDecoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                                          double* depth_bin) const {
-  plan_->engine.decode_depth_bins(measurements, pixels, depth_bin);
-}
-
-void MultipathDecoder::decode_bins(const float* measurements, std::int64_t pixels,
-                                   std::int32_t* bin) const {
-  nearest_bins(*this, measurements, pixels, bin);
+  engine_->decode_depth_bins(measurements, pixels, depth_bin);
 }
 
 }  // namespace tofsmith

@@ -50,7 +50,7 @@ class MultipathEngine {
   MultipathEngine(DecodingTable table, const MultipathOptions& options, MultipathKind later);
 
   const DecodingTable& table() const { return single_.table(); }
-  const MultipathOptions& options() const { return options_; }
+  MultipathKind kind() const { return kind_; }
 
   /// @param parts  parts of the range for the direct returns, one per pixel; null: anywhere
   void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,

@@ -61,13 +61,4 @@ void decode_frame(
     const std::function<void(const RawBlock& raw, const DecodedView& decoded)>& decode_block,
     std::int64_t block_pixels = usual_block_pixels);
 
-/// Returns a new image of one frame, filled by `decode(view, planes)`.
-template <typename Decode>
-DepthImage decoded_image(const RawFrames& raw, int frame, const Decode& decode) {
-  const RawView view = view_of_frame(raw, frame);
-  DepthImage image(raw.height, raw.width);
-  decode(view, DecodedView::of(image));
-  return image;
-}
-
 }  // namespace tofsmith

@@ -236,8 +236,6 @@ struct UnwrapDecoder::Plan {
 
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double row_of(const Wraps& wraps) const;
-  void decode(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
-              const Progress& progress) const;
   void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
                     const RangePart* part, std::size_t at, const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
@@ -256,51 +254,30 @@ UnwrapDecoder::UnwrapDecoder(UnwrapDecoder&&) noexcept = default;
 UnwrapDecoder& UnwrapDecoder::operator=(UnwrapDecoder&&) noexcept = default;
 
 const DecodingTable& UnwrapDecoder::table() const { return plan_->table; }
-const UnwrapOptions& UnwrapDecoder::options() const { return plan_->options; }
 const std::vector<int>& UnwrapDecoder::frequencies() const { return plan_->phases.frequencies(); }
 const std::vector<double>& UnwrapDecoder::weights() const { return plan_->weights; }
 
 void UnwrapDecoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                                       double* depth_bin) const {
   Plan::PerMeasurement electrons;
+  const int count = this->measurements();
   for (std::int64_t i = 0; i < pixels; ++i) {
     depth_bin[i] = std::numeric_limits<double>::quiet_NaN();
-    if (!plan_->scale.read(measurements + i * this->measurements(), electrons.data())) continue;
+    if (!plan_->scale.read(measurements + i * count, electrons.data())) continue;
     const Wraps wraps = plan_->unwrapper.nearest(plan_->phases_of(electrons).data());
     depth_bin[i] = plan_->table.in_bins(plan_->row_of(wraps));
   }
 }
 
-void UnwrapDecoder::decode_bins(const float* measurements, std::int64_t pixels,
-                                std::int32_t* bin) const {
-  nearest_bins(*this, measurements, pixels, bin);
-}
-
-void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,
-                           const Progress& progress) const {
-  plan_->decode(raw, nullptr, decoded, progress);
-}
-
-void UnwrapDecoder::decode_within(const RawView& raw, const RangePart* parts,
+void UnwrapDecoder::decode_pixels(const RawView& raw, const RangePart* parts,
                                   const DecodedView& decoded, const Progress& progress) const {
-  plan_->decode(raw, parts, decoded, progress);
-}
-
-DepthImage UnwrapDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
-  return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
-    decode(view, decoded, progress);
-  });
-}
-
-void UnwrapDecoder::Plan::decode(const RawView& raw, const RangePart* parts,
-                                 const DecodedView& decoded, const Progress& progress) const {
-  const int count = table.measurements();
-  decode_frame(MarkedRaw(raw, table.marking).view(), decoded, count, progress,
+  const int count = measurements();
+  decode_frame(MarkedRaw(raw, table().marking).view(), decoded, count, progress,
                [&](const RawBlock& block, const DecodedView& planes) {
                  for (std::int64_t i = 0; i < block.pixels; ++i)
-                   decode_pixel(block.values + i * count, block.variance_share(i),
-                                block.noise_of(i), parts ? parts + block.first + i : nullptr,
-                                static_cast<std::size_t>(i), planes);
+                   plan_->decode_pixel(block.values + i * count, block.variance_share(i),
+                                       block.noise_of(i), parts ? parts + block.first + i : nullptr,
+                                       static_cast<std::size_t>(i), planes);
                });
 }
 

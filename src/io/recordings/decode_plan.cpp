@@ -21,10 +21,6 @@ namespace tofsmith {
 
 namespace {
 
-bool finds_multipath(const DepthDecoder& decoder) {
-  return decoder.method() == DecodeMethod::two_return || decoder.method() == DecodeMethod::tail;
-}
-
 /// Errors name the file of the map.
 void load_map(const std::filesystem::path& path, const char* name, int height, int width,
               Image<float> PixelMaps::*map, PixelMaps& maps) {
@@ -101,8 +97,8 @@ void check_request(const DecodeRequest& request, const DepthDecoder& decoder) {
   require(!request.stack || output.extension() == ".npy", "stack", "true",
           fmt::format("is only valid with a .npy file; the output is {}", output.string()));
   for (const DecodedPlane plane : request.outputs) {
-    require(description_of(plane).use != PlaneUse::of_returns || finds_multipath(decoder),
-            "outputs", name_of(plane),
+    require(description_of(plane).use != PlaneUse::of_returns || decoder.finds_returns(), "outputs",
+            name_of(plane),
             fmt::format("is only valid with two-return or tail; the method is {}",
                         name_of(decoder.method())));
     require(plane == DecodedPlane::depth || !holds_depth_only(output) || request.stack, "outputs",
@@ -137,7 +133,7 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request,
                                           const DepthDecoder& decoder) {
   if (request.outputs.empty())
     return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
-                                            : usual_planes(finds_multipath(decoder));
+                                            : usual_planes(decoder.finds_returns());
   std::vector<DecodedPlane> planes;
   for (const DecodedPlane plane : request.outputs)
     if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
