@@ -20,6 +20,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/field_visitor.hpp"
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/lens_distortion.hpp"
 #include "tofsmith/core/parallel.hpp"

@@ -148,8 +148,7 @@ void parallel_for_blocks(std::int64_t count, std::int64_t block,
 
 ThreadLimit::ThreadLimit(int threads) {
   require(threads >= 0, "threads", threads, "must be >= 0 (0 uses every core)");
-  if (threads > 0) control_ = std::make_unique<Control>(threads);
+  if (threads > 0) control_ = make_hidden<Control>(threads);
 }
-ThreadLimit::~ThreadLimit() = default;
 
 }  // namespace tofsmith

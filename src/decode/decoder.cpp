@@ -86,11 +86,8 @@ Decoder::Decoder(DecodingTable table, const DecodeOptions& options) {
   options.validate();
   table.validate();
   const AmbientProjection projection(table);
-  plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
+  plan_ = make_hidden<const Plan>(std::move(table), options, projection);
 }
-Decoder::~Decoder() = default;
-Decoder::Decoder(Decoder&&) noexcept = default;
-Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 
 const DecodingTable& Decoder::table() const { return plan_->table; }
 int Decoder::rank() const { return plan_->model.rank(); }

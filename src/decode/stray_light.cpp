@@ -37,13 +37,10 @@ StrayLight::StrayLight(Image<float> kernel) : kernel_(std::move(kernel)) {
   require(share_ < 0.5, "sum of the kernel", share_,
           "must be < 0.5: the share of light that is scattered");
 }
-StrayLight::~StrayLight() = default;
-StrayLight::StrayLight(StrayLight&&) noexcept = default;
-StrayLight& StrayLight::operator=(StrayLight&&) noexcept = default;
 
 const StrayLight::Plan& StrayLight::plan_of(int height, int width) {
   if (!plan_ || plan_->height != height || plan_->width != width)
-    plan_ = std::make_unique<Plan>(Plan{{kernel_, height, width}, height, width});
+    plan_ = make_hidden<Plan>(Plan{{kernel_, height, width}, height, width});
   return *plan_;
 }
 

@@ -327,11 +327,8 @@ void DeviceDecoder::Plan::decode_open_pixels(const RawView& numbers,
 DeviceDecoder::DeviceDecoder(const Device& device, const Decoder& decoder,
                              const DeviceOptions& options) {
   options.validate();
-  plan_ = std::make_unique<Plan>(device, decoder, options);
+  plan_ = make_hidden<Plan>(device, decoder, options);
 }
-DeviceDecoder::~DeviceDecoder() = default;
-DeviceDecoder::DeviceDecoder(DeviceDecoder&&) noexcept = default;
-DeviceDecoder& DeviceDecoder::operator=(DeviceDecoder&&) noexcept = default;
 
 const Device& DeviceDecoder::device() const { return plan_->device; }
 

@@ -11,6 +11,7 @@
 
 #include "gpu/device_raw.hpp"
 #include "gpu/device_tables.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/gpu.hpp"
 
 namespace tofsmith {
@@ -91,9 +92,6 @@ class DeviceDecoder {
   DeviceDecoder(const Device& device, const Decoder& decoder, const DeviceOptions& options = {});
   DeviceDecoder(const Device& device, Decoder&& decoder,
                 const DeviceOptions& options = {}) = delete;
-  ~DeviceDecoder();
-  DeviceDecoder(DeviceDecoder&&) noexcept;
-  DeviceDecoder& operator=(DeviceDecoder&&) noexcept;
 
   const Device& device() const;
 
@@ -113,7 +111,7 @@ class DeviceDecoder {
   friend class DeviceFrames;
   std::int64_t decode_source(const FrameSource& frame, const Device& its_device,
                              const DecodedView& decoded, const Progress& progress) const;
-  std::unique_ptr<Plan> plan_;
+  Hidden<Plan> plan_;
 };
 
 /// Smallest part of a frame [pixels], and smallest part if splitting only overlaps copies with

@@ -376,11 +376,8 @@ std::int64_t DeviceFilter::Plan::run(const FrameSource& source, DeviceDecoder::P
 DeviceFilter::DeviceFilter(const Device& device, const Filter& filter,
                            const DeviceOptions& options) {
   options.validate();
-  plan_ = std::make_unique<Plan>(device, filter, options);
+  plan_ = make_hidden<Plan>(device, filter, options);
 }
-DeviceFilter::~DeviceFilter() = default;
-DeviceFilter::DeviceFilter(DeviceFilter&&) noexcept = default;
-DeviceFilter& DeviceFilter::operator=(DeviceFilter&&) noexcept = default;
 
 const Device& DeviceFilter::device() const { return plan_->device; }
 

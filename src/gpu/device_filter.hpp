@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 
 #include "gpu/device_decoder.hpp"
 #include "gpu/device_tables.hpp"
+#include "tofsmith/core/hidden.hpp"
 
 namespace tofsmith {
 
@@ -83,9 +83,6 @@ class DeviceFilter {
   /// @throws std::invalid_argument for invalid options; IoError if the device fails
   DeviceFilter(const Device& device, const Filter& filter, const DeviceOptions& options = {});
   DeviceFilter(const Device& device, Filter&& filter, const DeviceOptions& options = {}) = delete;
-  ~DeviceFilter();
-  DeviceFilter(DeviceFilter&&) noexcept;
-  DeviceFilter& operator=(DeviceFilter&&) noexcept;
 
   const Device& device() const;
 
@@ -113,7 +110,7 @@ class DeviceFilter {
                              FilteredFrame* filtered, const Progress& progress,
                              const Image<std::uint8_t>& left_out) const;
   struct Plan;
-  std::unique_ptr<Plan> plan_;
+  Hidden<Plan> plan_;
 };
 
 }  // namespace tofsmith

@@ -95,11 +95,8 @@ FrameSource DeviceFrames::Plan::source() {
 DeviceFrames::DeviceFrames(const Device& device, const DecodingTable& table,
                            const TimeFilter* time_filter, const DeviceOptions& options) {
   options.validate();
-  plan_ = std::make_unique<Plan>(device, table, time_filter, options);
+  plan_ = make_hidden<Plan>(device, table, time_filter, options);
 }
-DeviceFrames::~DeviceFrames() = default;
-DeviceFrames::DeviceFrames(DeviceFrames&&) noexcept = default;
-DeviceFrames& DeviceFrames::operator=(DeviceFrames&&) noexcept = default;
 
 int DeviceFrames::frames_of_mean() const { return plan_->frames_added; }
 

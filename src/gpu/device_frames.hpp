@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "gpu/device_filter.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/gpu.hpp"
 
 namespace tofsmith {
@@ -23,9 +24,6 @@ class DeviceFrames {
   /// @throws std::invalid_argument for invalid options or filters; IoError if the device fails
   DeviceFrames(const Device& device, const DecodingTable& table, const TimeFilter* time_filter,
                const DeviceOptions& options = {});
-  ~DeviceFrames();
-  DeviceFrames(DeviceFrames&&) noexcept;
-  DeviceFrames& operator=(DeviceFrames&&) noexcept;
 
   /// Adds a frame to the next mean. Numbers that are invalid or saturated in one frame are so in
   /// the mean.
@@ -60,7 +58,7 @@ class DeviceFrames {
 
  private:
   struct Plan;
-  std::unique_ptr<Plan> plan_;
+  Hidden<Plan> plan_;
 };
 
 /// Returns the device that `auto` uses, or nothing.

@@ -44,18 +44,14 @@ struct RayCaster::Prepared {
 
 RayCaster::RayCaster(std::span<const Shape> shapes, const MeshSearchMaker& search_of) {
   for (const Shape& shape : shapes) validate(shape);
-  auto prepared = std::make_unique<Prepared>();
-  prepared->shapes.assign(shapes.begin(), shapes.end());
-  prepared->searches.resize(shapes.size());
+  Prepared prepared;
+  prepared.shapes.assign(shapes.begin(), shapes.end());
+  prepared.searches.resize(shapes.size());
   for (std::size_t i = 0; search_of && i < shapes.size(); ++i)
-    if (const Mesh* mesh = std::get_if<Mesh>(&prepared->shapes[i]))
-      prepared->searches[i] = search_of(*mesh);
-  prepared_ = std::move(prepared);
+    if (const Mesh* mesh = std::get_if<Mesh>(&prepared.shapes[i]))
+      prepared.searches[i] = search_of(*mesh);
+  prepared_ = make_hidden<const Prepared>(std::move(prepared));
 }
-
-RayCaster::~RayCaster() = default;
-RayCaster::RayCaster(RayCaster&&) noexcept = default;
-RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
 std::optional<Hit> RayCaster::nearest(const Ray& ray) const {
   NearestHit nearest;

@@ -130,15 +130,12 @@ void SweepStore::merge(const std::filesystem::path& path,
   transaction.commit();
 }
 
-SweepStore::SweepStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
-SweepStore::SweepStore(SweepStore&&) noexcept = default;
-SweepStore::~SweepStore() = default;
+SweepStore::SweepStore(Hidden<State> state) : state_(std::move(state)) {}
 
 SweepStore SweepStore::open(const std::filesystem::path& path, const SweepStoreOptions& options) {
   const std::string here = dispatch_target();
   const std::string network = options.network_file_system.value_or(network_file_system_at(path));
-  auto state =
-      std::make_unique<State>(State{path, {nullptr, open_store_file(path, here, network)}, {}});
+  auto state = make_hidden<State>(State{path, {nullptr, open_store_file(path, here, network)}, {}});
   state->target = read_target(state->database(), path);
   if (state->target != here)
     throw IoError(
@@ -151,7 +148,7 @@ SweepStore SweepStore::open(const std::filesystem::path& path, const SweepStoreO
 }
 
 SweepStore SweepStore::read(const std::filesystem::path& path) {
-  auto state = std::make_unique<State>(State{path, read_store_file(path), {}});
+  auto state = make_hidden<State>(State{path, read_store_file(path), {}});
   state->target = read_target(state->database(), path);
   return SweepStore(std::move(state));
 }

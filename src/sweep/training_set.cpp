@@ -218,14 +218,13 @@ Json TrainingSetWriter::State::parameters_of(const TrainingScene& scene, const E
           {"lens", lens_document(lens_of(example.scene.view))}};
 }
 
-TrainingSetWriter::~TrainingSetWriter() = default;
 TrainingSetWriter::TrainingSetWriter(fs::path directory, CodeSet code, Camera camera,
                                      TrainingSetOptions options) {
   options.validate();
   std::string setup = setup_key(camera, code);
   Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
-  state_ = std::make_unique<State>(State{std::move(directory), std::move(code), std::move(camera),
-                                         options, std::move(setup), std::move(decoder)});
+  state_ = make_hidden<State>(State{std::move(directory), std::move(code), std::move(camera),
+                                    options, std::move(setup), std::move(decoder)});
 }
 
 std::vector<TrainingScene> TrainingSetWriter::scenes_of_shard(

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
+
+#include "tofsmith/core/hidden.hpp"
 
 namespace tofsmith {
 
@@ -26,13 +27,10 @@ void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& w
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
-  ~ThreadLimit();
-  ThreadLimit(const ThreadLimit&) = delete;
-  ThreadLimit& operator=(const ThreadLimit&) = delete;
 
  private:
   struct Control;
-  std::unique_ptr<Control> control_;
+  Hidden<Control> control_;
 };
 
 }  // namespace tofsmith

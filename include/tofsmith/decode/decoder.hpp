@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/decode/depth_decoder.hpp"
 
 namespace tofsmith {
@@ -68,9 +68,6 @@ class Decoder final : public DepthDecoder {
  public:
   /// @throws InvalidArgument for invalid arguments
   explicit Decoder(DecodingTable table, const DecodeOptions& options = {});
-  ~Decoder() override;
-  Decoder(Decoder&&) noexcept;
-  Decoder& operator=(Decoder&&) noexcept;
 
   DecodeMethod method() const override { return DecodeMethod::zncc; }
   const DecodingTable& table() const override;
@@ -92,7 +89,7 @@ class Decoder final : public DepthDecoder {
                      const Progress& progress) const override;
 
   struct Plan;
-  std::unique_ptr<const Plan> plan_;
+  Hidden<const Plan> plan_;
 };
 
 }  // namespace tofsmith

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
@@ -69,9 +69,6 @@ struct FilterPlanes;
 class FilteredFrame {
  public:
   FilteredFrame();
-  ~FilteredFrame();
-  FilteredFrame(FilteredFrame&&) noexcept;
-  FilteredFrame& operator=(FilteredFrame&&) noexcept;
 
   int height() const;
   int width() const;
@@ -89,7 +86,7 @@ class FilteredFrame {
  private:
   friend class Filter;
   friend FilterPlanes& planes_of(FilteredFrame& frame);
-  std::unique_ptr<FilterPlanes> planes_;
+  Hidden<FilterPlanes> planes_;
 };
 
 /// Averages the raw measurements of neighbouring pixels at the same depth, before decoding.
@@ -111,9 +108,6 @@ class Filter {
  public:
   /// @throws InvalidArgument for invalid arguments
   explicit Filter(DecodingTable table, const FilterOptions& options = {});
-  ~Filter();
-  Filter(Filter&&) noexcept;
-  Filter& operator=(Filter&&) noexcept;
 
   const DecodingTable& table() const;
   const FilterOptions& options() const;
@@ -138,7 +132,7 @@ class Filter {
 
  private:
   friend const Plan& plan_of(const Filter& filter);
-  std::unique_ptr<const Plan> plan_;
+  Hidden<const Plan> plan_;
 };
 
 struct TimeFilterOptions {
@@ -184,9 +178,6 @@ class TimeFilter {
  public:
   /// @throws InvalidArgument for invalid arguments
   explicit TimeFilter(const DecodingTable& table, const TimeFilterOptions& options = {});
-  ~TimeFilter();
-  TimeFilter(TimeFilter&&) noexcept;
-  TimeFilter& operator=(TimeFilter&&) noexcept;
 
   const DecodingTable& table() const;
   const TimeFilterOptions& options() const;
@@ -213,7 +204,7 @@ class TimeFilter {
 
  private:
   friend const State& state_of(const TimeFilter& filter);
-  std::unique_ptr<State> state_;
+  Hidden<State> state_;
 };
 
 }  // namespace tofsmith

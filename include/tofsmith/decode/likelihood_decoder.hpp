@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {
@@ -36,9 +36,6 @@ class LikelihoodDecoder final : public DepthDecoder {
  public:
   /// @throws InvalidArgument for invalid arguments
   explicit LikelihoodDecoder(DecodingTable table, const DecodeOptions& options = {});
-  ~LikelihoodDecoder() override;
-  LikelihoodDecoder(LikelihoodDecoder&&) noexcept;
-  LikelihoodDecoder& operator=(LikelihoodDecoder&&) noexcept;
 
   DecodeMethod method() const override { return DecodeMethod::ml; }
   const DecodingTable& table() const override;
@@ -51,7 +48,7 @@ class LikelihoodDecoder final : public DepthDecoder {
                      const Progress& progress) const override;
 
   struct Plan;
-  std::unique_ptr<const Plan> plan_;
+  Hidden<const Plan> plan_;
 };
 
 }  // namespace tofsmith

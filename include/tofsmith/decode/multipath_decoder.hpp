@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {
@@ -73,10 +73,6 @@ enum class MultipathKind;
 /// Immutable and thread-safe.
 class MultipathDecoder : public DepthDecoder {
  public:
-  ~MultipathDecoder() override;
-  MultipathDecoder(MultipathDecoder&&) noexcept;
-  MultipathDecoder& operator=(MultipathDecoder&&) noexcept;
-
   DecodeMethod method() const override;
   const DecodingTable& table() const override;
   void decode_depth_bins(const float* measurements, std::int64_t pixels,
@@ -89,7 +85,7 @@ class MultipathDecoder : public DepthDecoder {
   void decode_pixels(const RawView& raw, const RangePart* parts, const DecodedView& decoded,
                      const Progress& progress) const override;
 
-  std::unique_ptr<const MultipathEngine> engine_;
+  Hidden<const MultipathEngine> engine_;
 };
 
 /// Decodes the direct depth of pixels whose return is followed by an exponential tail, as in haze:

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 
@@ -19,9 +18,6 @@ class StrayLight {
   /// @throws InvalidArgument unless both sizes are odd, all values are finite and >= 0, and their
   ///   sum is < 0.5
   explicit StrayLight(Image<float> kernel);
-  ~StrayLight();
-  StrayLight(StrayLight&&) noexcept;
-  StrayLight& operator=(StrayLight&&) noexcept;
 
   const Image<float>& kernel() const { return kernel_; }
   /// s, the scattered fraction of all light.
@@ -48,7 +44,7 @@ class StrayLight {
 
   Image<float> kernel_;
   double share_ = 0.0;
-  std::unique_ptr<Plan> plan_;
+  Hidden<Plan> plan_;
 };
 
 }  // namespace tofsmith

@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {
@@ -62,9 +62,6 @@ class UnwrapDecoder final : public DepthDecoder {
   ///         a sinusoid, a frequency is measured in fewer than two phases, the offset cannot be
   ///         determined, or the frequencies have a common divisor
   explicit UnwrapDecoder(DecodingTable table, const UnwrapOptions& options = {});
-  ~UnwrapDecoder() override;
-  UnwrapDecoder(UnwrapDecoder&&) noexcept;
-  UnwrapDecoder& operator=(UnwrapDecoder&&) noexcept;
 
   DecodeMethod method() const override { return DecodeMethod::unwrap; }
   const DecodingTable& table() const override;
@@ -81,7 +78,7 @@ class UnwrapDecoder final : public DepthDecoder {
                      const Progress& progress) const override;
 
   struct Plan;
-  std::unique_ptr<const Plan> plan_;
+  Hidden<const Plan> plan_;
 };
 
 }  // namespace tofsmith

@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
@@ -74,9 +74,6 @@ class CirculantTvSolver {
  public:
   /// @throws InvalidArgument unless samples >= 1
   explicit CirculantTvSolver(int samples);
-  ~CirculantTvSolver();
-  CirculantTvSolver(CirculantTvSolver&&) noexcept;
-  CirculantTvSolver& operator=(CirculantTvSolver&&) noexcept;
 
   int samples() const;
 
@@ -89,7 +86,7 @@ class CirculantTvSolver {
 
  private:
   struct Workspace;
-  std::unique_ptr<Workspace> workspace_;
+  Hidden<Workspace> workspace_;
 };
 
 /// Solves by the active set; if that stalls, by ADMM and by the active set from ADMM's pieces.

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
@@ -57,9 +57,6 @@ class CodeGradients {
   /// @throws InvalidArgument for an invalid camera, or one with rows, generator, playback,
   ///   temperature or tap_mismatch, which depend on the waveforms
   CodeGradients(const Camera& camera, int samples, int exposures);
-  ~CodeGradients();
-  CodeGradients(const CodeGradients&) = delete;
-  CodeGradients& operator=(const CodeGradients&) = delete;
 
   int samples() const;
   int exposures() const;
@@ -118,7 +115,7 @@ class CodeGradients {
   struct Steps;
 
  private:
-  std::unique_ptr<const Steps> steps_;
+  Hidden<const Steps> steps_;
 };
 
 }  // namespace tofsmith

@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith {
@@ -127,8 +127,6 @@ class NpyReader {
  public:
   /// Checks header and length. @throws IoError as read_npy()
   explicit NpyReader(const std::filesystem::path& path);
-  ~NpyReader();
-  NpyReader(NpyReader&&) noexcept;
 
   NpyType type() const;
   const NpyShape& shape() const;
@@ -142,7 +140,7 @@ class NpyReader {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  Hidden<State> state_;
 };
 
 /// Writes an NPY file of a given shape in pieces, see AtomicFile.
@@ -177,8 +175,6 @@ class NpzReader {
   explicit NpzReader(const std::filesystem::path& path);
   /// @param content  must outlive the reader
   NpzReader(std::span<const std::byte> content, std::string_view file);
-  ~NpzReader();
-  NpzReader(NpzReader&&) noexcept;
 
   /// Names without ".npy", in the archive's order.
   const std::vector<std::string>& names() const;
@@ -190,7 +186,7 @@ class NpzReader {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  Hidden<State> state_;
 };
 
 using NpzArrays = std::map<std::string, NpyArray>;

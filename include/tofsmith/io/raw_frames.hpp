@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/io/atomic_file.hpp"
@@ -79,8 +79,6 @@ class RawFramesReader {
   /// @throws IoError as above, or if type or shape of the files differ
   explicit RawFramesReader(const std::vector<std::filesystem::path>& files,
                            const RawReadOptions& options = {});
-  ~RawFramesReader();
-  RawFramesReader(RawFramesReader&&) noexcept;
 
   int frames() const { return sizes_.frames; }
   int height() const { return sizes_.height; }
@@ -118,9 +116,9 @@ class RawFramesReader {
   RawView rows_in_memory(int frame, int first_row, int rows) const;
   RawView rows_of_parts(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
 
-  std::unique_ptr<StoredArray> file_;
-  std::unique_ptr<RawDumpReader> dump_;  // then `file_` is null and `whole_` empty
-  std::vector<RawFramesReader> parts_;   // per measurement; then the other sources are unused
+  Hidden<StoredArray> file_;
+  Hidden<RawDumpReader> dump_;          // then `file_` is null and `whole_` empty
+  std::vector<RawFramesReader> parts_;  // per measurement; then the other sources are unused
   NpyArray whole_;
   NpyType type_ = NpyType::float32;
   bool holds_integers_ = false, holds_unsigned_ = false;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/scene_image.hpp"
@@ -54,9 +55,6 @@ class RayCaster {
  public:
   /// Copies the shapes. @throws std::invalid_argument if one is invalid; exceptions of `search_of`
   explicit RayCaster(std::span<const Shape> shapes, const MeshSearchMaker& search_of = {});
-  ~RayCaster();
-  RayCaster(RayCaster&&) noexcept;
-  RayCaster& operator=(RayCaster&&) noexcept;
 
   /// Returns the nearest hit of all shapes.
   std::optional<Hit> nearest(const Ray& ray) const;
@@ -72,7 +70,7 @@ class RayCaster {
 
  private:
   struct Prepared;
-  std::unique_ptr<const Prepared> prepared_;
+  Hidden<const Prepared> prepared_;
 };
 
 /// Returns the image of RayCaster::see() for a single view. @throws std::invalid_argument as see()

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -121,8 +121,6 @@ class SweepStore {
   /// @throws IoError as open() and read(), if `path` is not new or empty, or results differ
   static void merge(const std::filesystem::path& path,
                     std::span<const std::filesystem::path> parts);
-  ~SweepStore();
-  SweepStore(SweepStore&&) noexcept;
 
   /// Instruction set of the results, see dispatch_target().
   const std::string& target() const;
@@ -150,8 +148,8 @@ class SweepStore {
 
  private:
   struct State;
-  explicit SweepStore(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  explicit SweepStore(Hidden<State> state);
+  Hidden<State> state_;
 };
 
 /// Increased when the results of equal settings change; invalidates older stores.

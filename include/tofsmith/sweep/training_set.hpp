@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 #include "tofsmith/simulate/capture.hpp"
@@ -72,9 +72,6 @@ class TrainingSetWriter {
  public:
   TrainingSetWriter(std::filesystem::path directory, CodeSet code, Camera camera,
                     TrainingSetOptions options);
-  ~TrainingSetWriter();
-  TrainingSetWriter(const TrainingSetWriter&) = delete;
-  TrainingSetWriter& operator=(const TrainingSetWriter&) = delete;
 
   /// Returns the scenes of the shard.
   std::vector<TrainingScene> scenes_of_shard(std::span<const TrainingScene> scenes) const;
@@ -88,7 +85,7 @@ class TrainingSetWriter {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  Hidden<State> state_;
 };
 
 /// Captures and decodes every scene: KEY.npz (raw, depth_m, true_depth_m, albedo) and KEY.json

@@ -32,11 +32,8 @@ Filter::Filter(DecodingTable table, const FilterOptions& options) {
   table.validate();
   require_exposures(table, "the filter");
   const AmbientProjection projection(table);
-  plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
+  plan_ = make_hidden<const Plan>(std::move(table), options, projection);
 }
-Filter::~Filter() = default;
-Filter::Filter(Filter&&) noexcept = default;
-Filter& Filter::operator=(Filter&&) noexcept = default;
 
 void require_filterable(const Filter::Plan& plan, const RawView& raw,
                         const Image<std::uint8_t>& left_out) {

@@ -67,10 +67,7 @@ void FilterPlanes::reserve_deviation_factors(bool are_wanted) {
     deviation_factor = Image<float>(grid.height, grid.width, 1.0f);
 }
 
-FilteredFrame::FilteredFrame() : planes_(std::make_unique<FilterPlanes>()) {}
-FilteredFrame::~FilteredFrame() = default;
-FilteredFrame::FilteredFrame(FilteredFrame&&) noexcept = default;
-FilteredFrame& FilteredFrame::operator=(FilteredFrame&&) noexcept = default;
+FilteredFrame::FilteredFrame() : planes_(make_hidden<FilterPlanes>()) {}
 
 int FilteredFrame::height() const { return planes_->grid.height; }
 int FilteredFrame::width() const { return planes_->grid.width; }

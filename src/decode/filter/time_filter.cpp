@@ -17,11 +17,8 @@ TimeFilter::TimeFilter(const DecodingTable& table, const TimeFilterOptions& opti
   options.validate();
   table.validate();
   require_exposures(table, "the temporal filter");
-  state_ = std::make_unique<State>(table, options, AmbientProjection(table));
+  state_ = make_hidden<State>(table, options, AmbientProjection(table));
 }
-TimeFilter::~TimeFilter() = default;
-TimeFilter::TimeFilter(TimeFilter&&) noexcept = default;
-TimeFilter& TimeFilter::operator=(TimeFilter&&) noexcept = default;
 
 const TimeFilter::State& state_of(const TimeFilter& filter) { return *filter.state_; }
 

@@ -351,11 +351,8 @@ LikelihoodDecoder::LikelihoodDecoder(DecodingTable table, const DecodeOptions& o
           "must be \"whitened\" for ml, which takes the correlation of the noise into account");
   const DecodingTable white = whitened(table);
   const AmbientProjection projection(white);
-  plan_ = std::make_unique<const Plan>(std::move(table), options, white, projection);
+  plan_ = make_hidden<const Plan>(std::move(table), options, white, projection);
 }
-LikelihoodDecoder::~LikelihoodDecoder() = default;
-LikelihoodDecoder::LikelihoodDecoder(LikelihoodDecoder&&) noexcept = default;
-LikelihoodDecoder& LikelihoodDecoder::operator=(LikelihoodDecoder&&) noexcept = default;
 
 const DecodingTable& LikelihoodDecoder::table() const { return plan_->table; }
 

@@ -28,10 +28,7 @@ void MultipathOptions::validate(double range_m) const {
 
 MultipathDecoder::MultipathDecoder(DecodingTable table, const MultipathOptions& options,
                                    MultipathKind later)
-    : engine_(std::make_unique<const MultipathEngine>(std::move(table), options, later)) {}
-MultipathDecoder::~MultipathDecoder() = default;
-MultipathDecoder::MultipathDecoder(MultipathDecoder&&) noexcept = default;
-MultipathDecoder& MultipathDecoder::operator=(MultipathDecoder&&) noexcept = default;
+    : engine_(make_hidden<const MultipathEngine>(std::move(table), options, later)) {}
 
 TwoReturnDecoder::TwoReturnDecoder(DecodingTable table, const MultipathOptions& options)
     : MultipathDecoder(std::move(table), options, MultipathKind::second_return) {}

@@ -247,11 +247,8 @@ UnwrapDecoder::UnwrapDecoder(DecodingTable table, const UnwrapOptions& options) 
   table.validate();
   require_exposures(table, "phase unwrapping");
   const AmbientProjection projection(table);
-  plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
+  plan_ = make_hidden<const Plan>(std::move(table), options, projection);
 }
-UnwrapDecoder::~UnwrapDecoder() = default;
-UnwrapDecoder::UnwrapDecoder(UnwrapDecoder&&) noexcept = default;
-UnwrapDecoder& UnwrapDecoder::operator=(UnwrapDecoder&&) noexcept = default;
 
 const DecodingTable& UnwrapDecoder::table() const { return plan_->table; }
 const std::vector<int>& UnwrapDecoder::frequencies() const { return plan_->phases.frequencies(); }

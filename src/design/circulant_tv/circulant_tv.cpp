@@ -220,11 +220,8 @@ struct CirculantTvSolver::Workspace {
 
 CirculantTvSolver::CirculantTvSolver(int samples) {
   require(samples >= 1, "samples", samples, "must be >= 1");
-  workspace_ = std::make_unique<Workspace>(samples);
+  workspace_ = make_hidden<Workspace>(samples);
 }
-CirculantTvSolver::~CirculantTvSolver() = default;
-CirculantTvSolver::CirculantTvSolver(CirculantTvSolver&&) noexcept = default;
-CirculantTvSolver& CirculantTvSolver::operator=(CirculantTvSolver&&) noexcept = default;
 
 int CirculantTvSolver::samples() const { return workspace_->problem_samples; }
 

@@ -313,8 +313,7 @@ void CodeGradients::Steps::pull_back_functions(const BetweenBins::Functions& gra
 }
 
 CodeGradients::CodeGradients(const Camera& camera, int samples, int exposures)
-    : steps_(std::make_unique<const Steps>(camera, samples, exposures)) {}
-CodeGradients::~CodeGradients() = default;
+    : steps_(make_hidden<const Steps>(camera, samples, exposures)) {}
 
 int CodeGradients::samples() const { return steps_->sampled.samples(); }
 int CodeGradients::exposures() const { return steps_->exposures; }

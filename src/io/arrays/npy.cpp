@@ -384,11 +384,8 @@ NpyReader::NpyReader(const std::filesystem::path& path) {
   std::vector<std::byte> start(std::min<std::uint64_t>(*file.size(), max_npy_header_bytes));
   file.read_at(0, start);
   NpyHeader header = parse_npy_header(start, *file.size(), path.string());
-  state_ = std::make_unique<State>(State{std::move(file), std::move(header)});
+  state_ = make_hidden<State>(State{std::move(file), std::move(header)});
 }
-
-NpyReader::~NpyReader() = default;
-NpyReader::NpyReader(NpyReader&&) noexcept = default;
 
 NpyType NpyReader::type() const { return state_->header.type; }
 const NpyShape& NpyReader::shape() const { return state_->header.shape; }

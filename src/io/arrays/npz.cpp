@@ -128,7 +128,7 @@ std::vector<std::byte> NpzReader::State::unpack(std::size_t index) const {
   }
 }
 
-NpzReader::NpzReader(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
+NpzReader::NpzReader(const std::filesystem::path& path) : state_(make_hidden<State>()) {
   state_->file = path.string();
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
@@ -140,15 +140,12 @@ NpzReader::NpzReader(const std::filesystem::path& path) : state_(std::make_uniqu
 }
 
 NpzReader::NpzReader(std::span<const std::byte> content, std::string_view file)
-    : state_(std::make_unique<State>()) {
+    : state_(make_hidden<State>()) {
   state_->file = file;
   Source source(zip_source_buffer_create(content.data(), content.size(), 0, nullptr));
   state_->archive = open_archive(std::move(source), ZIP_RDONLY, state_->file);
   state_->read_directory();
 }
-
-NpzReader::~NpzReader() = default;
-NpzReader::NpzReader(NpzReader&&) noexcept = default;
 
 const std::vector<std::string>& NpzReader::names() const { return state_->names; }
 

@@ -117,9 +117,6 @@ RawFramesReader::RawFramesReader(const std::vector<std::filesystem::path>& files
     open_array(files.front(), options, false);
 }
 
-RawFramesReader::~RawFramesReader() = default;
-RawFramesReader::RawFramesReader(RawFramesReader&&) noexcept = default;
-
 void RawFramesReader::open_array(const std::filesystem::path& path, const RawReadOptions& options,
                                  bool is_one_measurement) {
   const std::string extension = lower_extension(path);
@@ -139,8 +136,7 @@ void RawFramesReader::open_array(const std::filesystem::path& path, const RawRea
   } else if (extension == ".npz") {
     whole_ = read_npz_array(path, options);
   } else if (extension != ".npy") {
-    file_ =
-        std::make_unique<StoredArray>(open_hdf5(path, options.dataset, options.max_in_memory / 2));
+    file_ = make_hidden<StoredArray>(open_hdf5(path, options.dataset, options.max_in_memory / 2));
   } else {
     refuse_dataset(path, options);
     NpyReader reader(path);
@@ -148,7 +144,7 @@ void RawFramesReader::open_array(const std::filesystem::path& path, const RawRea
       check_memory(bytes_of(reader), options, path.string(), "an .npy in Fortran order");
       whole_ = reader.read_all();
     } else {
-      file_ = std::make_unique<StoredArray>(stored_array(std::move(reader)));
+      file_ = make_hidden<StoredArray>(stored_array(std::move(reader)));
     }
   }
   const NpyType stored = file_ ? file_->type : whole_.type();
@@ -203,7 +199,7 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
 
 void RawFramesReader::open_dump(const std::filesystem::path& path, const RawReadOptions& options) {
   refuse_dataset(path, options);
-  dump_ = std::make_unique<RawDumpReader>(path, *options.format, options.marking);
+  dump_ = make_hidden<RawDumpReader>(path, *options.format, options.marking);
   const RawFormat& format = dump_->format();
   check_markers(options.marking.markers, format, path.string());
   type_ = format.needs_doubles() ? NpyType::float64 : NpyType::float32;
