@@ -351,10 +351,4 @@ std::int64_t DeviceDecoder::decode_source(const FrameSource& frame, const Device
   return plan_->decode_all(frame, decoded, progress);
 }
 
-DepthImage DeviceDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
-  DepthImage image(raw.height, raw.width);
-  decode(view_of_frame(raw, frame), DecodedView::of(image), progress);
-  return image;
-}
-
 }  // namespace tofsmith

@@ -101,8 +101,6 @@ class DeviceDecoder {
   ///     Interrupted if `progress` cancels. The last two may leave planes partly written.
   std::int64_t decode(const RawView& raw, const DecodedView& decoded,
                       const Progress& progress = {}) const;
-  /// As above for a frame of `raw` (F, H, W, K).
-  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   struct Plan;
 

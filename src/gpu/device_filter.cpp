@@ -389,12 +389,6 @@ void DeviceFilter::apply(const RawView& raw, FilteredFrame& filtered, const Prog
   plan_->run({.raw = marked.view()}, nullptr, {}, &filtered, progress, left_out);
 }
 
-FilteredFrame DeviceFilter::apply(const RawFrames& raw, int frame, const Progress& progress) const {
-  FilteredFrame filtered;
-  apply(view_of_frame(raw, frame), filtered, progress);
-  return filtered;
-}
-
 std::int64_t DeviceFilter::decode(const RawView& raw, const DeviceDecoder& decoder,
                                   const DecodedView& decoded, FilteredFrame* filtered,
                                   const Progress& progress,

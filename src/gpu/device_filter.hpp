@@ -91,8 +91,6 @@ class DeviceFilter {
   ///         fails; Interrupted if `progress` cancels
   void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
              const Image<std::uint8_t>& left_out = {}) const;
-  /// As above for a frame of `raw` (F, H, W, K).
-  FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Filters and decodes a frame.
   /// @param decoder   on the same device

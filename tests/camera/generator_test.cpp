@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/prototype.hpp"
 #include "camera/shared/actual_code.hpp"
 #include "core/shared/random.hpp"
 #include "refusal.hpp"

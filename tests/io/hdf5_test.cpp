@@ -185,7 +185,7 @@ TEST(Hdf5, RejectsTruncatedFiles) {
       std::filesystem::copy_file(directory / "a.h5", directory / "b.h5",
                                  std::filesystem::copy_options::overwrite_existing);
       std::filesystem::resize_file(directory / "b.h5", length);
-      EXPECT_THROW(RawFramesReader(directory / "b.h5").read_frame(0), IoError) << length;
+      EXPECT_THROW(read_raw_frames(directory / "b.h5"), IoError) << length;
     }
   }
 }

@@ -222,7 +222,7 @@ std::string error_of_dump(const RawFormat& format, const FileBytes& bytes) {
   RawReadOptions options;
   options.format = format;
   try {
-    RawFramesReader(path, options).read_frame(0);
+    read_frame(RawFramesReader(path, options), 0);
   } catch (const IoError& error) {
     return error.what();
   }
@@ -362,7 +362,7 @@ TEST(RawFrames, HalfPrecisionIsReadAsFloat) {
     const RawFramesReader reader(directory / name);
     EXPECT_EQ(reader.type(), NpyType::float32);
     EXPECT_FALSE(reader.holds_integers());
-    EXPECT_THAT(reader.read_frame(0).values,
+    EXPECT_THAT(read_frame(reader, 0).values,
                 testing::ElementsAre(1.0f, -65504.0f, 0x1p-24f, -0.0f, INFINITY, 0x1.554p-2f));
   }
 }

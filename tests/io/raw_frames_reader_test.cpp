@@ -14,6 +14,7 @@
 
 #include "damaged_files.hpp"
 #include "decode_setup.hpp"
+#include "raw_packer.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/io/npy.hpp"
 
@@ -198,7 +199,7 @@ TYPED_TEST(WholeNumbers, AreReadUnchanged) {
     const RawFramesReader reader(directory / name);
     EXPECT_TRUE(reader.holds_integers());
     EXPECT_EQ(reader.type() == NpyType::float64, sizeof(TypeParam) >= 4);
-    EXPECT_EQ(reader.read_frame(0).values,
+    EXPECT_EQ(read_frame(reader, 0).values,
               (std::vector<float>{static_cast<float>(lowest), 1.0f, 127.0f,
                                   static_cast<float>(highest)}));
   }
@@ -211,8 +212,8 @@ TEST(RawFramesReader, DoesNotGuessTheLayoutOfACube) {
   write_npy(directory / "a.npy", NpyArray::of<std::uint8_t>({4, 4, 4}, values), overwrite);
   const RawFramesReader side_by_side(directory / "a.npy", {.measurements = 4}),
       planes(directory / "a.npy", {.measurements = 4, .layout = RawLayout::planar});
-  EXPECT_EQ(side_by_side.read_frame(0).values[1], 1.0f);
-  EXPECT_EQ(planes.read_frame(0).values[1], 16.0f);
+  EXPECT_EQ(read_frame(side_by_side, 0).values[1], 1.0f);
+  EXPECT_EQ(read_frame(planes, 0).values[1], 16.0f);
 }
 
 TEST(RawFramesReader, DetectsAFileThatShrinksAndIgnoresOneThatGrows) {
@@ -222,10 +223,10 @@ TEST(RawFramesReader, DetectsAFileThatShrinksAndIgnoresOneThatGrows) {
   const RawFramesReader reader(directory / "a.npy");
   const auto bytes = std::filesystem::file_size(directory / "a.npy");
   std::filesystem::resize_file(directory / "a.npy", bytes + 96);
-  EXPECT_EQ(reader.read_frame(2).values.back(), raw.values.back());
+  EXPECT_EQ(read_frame(reader, 2).values.back(), raw.values.back());
   std::filesystem::resize_file(directory / "a.npy", bytes - 1);
-  EXPECT_EQ(reader.read_frame(1).values.back(), raw.frame(1)[23]);
-  EXPECT_THAT(io_error_of([&] { reader.read_frame(2); }), HasSubstr("the file ends here"));
+  EXPECT_EQ(read_frame(reader, 1).values.back(), raw.frame(1)[23]);
+  EXPECT_THAT(io_error_of([&] { read_frame(reader, 2); }), HasSubstr("the file ends here"));
   EXPECT_THAT(io_error_of([&] { RawFramesReader(directory / "a.npy"); }),
               HasSubstr("bytes of data"));
 }

@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,16 @@
 #include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
+
+/// Reads a frame as (1, H, W, K).
+inline RawFrames read_frame(const RawFramesReader& reader, int index) {
+  std::vector<std::byte> buffer;
+  const RawView view = reader.read_rows(index, 0, reader.height(), buffer);
+  RawFrames frame{1, view.height, view.width, view.measurements, {}};
+  frame.values.resize(static_cast<std::size_t>(view.pixels() * view.measurements));
+  copy_pixels(view, 0, view.pixels(), frame.values.data());
+  return frame;
+}
 
 /// Writes a raw file bit by bit according to docs/raw_formats.md, with a map of each bit's place.
 class RawPacker {

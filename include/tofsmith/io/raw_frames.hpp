@@ -100,8 +100,6 @@ class RawFramesReader {
   /// @param buffer  memory of the view, which is valid until the buffer changes
   /// @throws std::invalid_argument if there is no such frame or row
   RawView read_rows(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
-  /// Reads a frame as (1, H, W, K).
-  RawFrames read_frame(int index) const;
 
  private:
   struct OneMeasurement {};

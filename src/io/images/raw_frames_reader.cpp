@@ -336,16 +336,6 @@ RawView RawFramesReader::view_of(const std::byte* data, int rows, int rows_of_a_
   }
 }
 
-RawFrames RawFramesReader::read_frame(int index) const {
-  std::vector<std::byte> buffer;
-  const RawView view = read_rows(index, 0, height(), buffer);
-  RawFrames frame = sizes_;
-  frame.frames = 1;
-  frame.values.resize(frame.pixels_per_frame() * static_cast<std::size_t>(frame.measurements));
-  copy_pixels(view, 0, view.pixels(), frame.values.data());
-  return frame;
-}
-
 RawFrames read_raw_frames(const std::vector<std::filesystem::path>& files,
                           const RawReadOptions& options) {
   const RawFramesReader reader(files, options);
