@@ -116,12 +116,11 @@ class BoundTrainingSet {
     const py::gil_scoped_release release;
     const SharedThreadLimit limit(threads);
     std::vector<SceneTuple> outcomes(names.size());
-    parallel_for(static_cast<std::int64_t>(names.size()), [&](std::int64_t i) {
-      const std::string& name = names[static_cast<std::size_t>(i)];
+    parallel_for_indices(names.size(), [&](std::size_t at) {
+      const std::string& name = names[at];
       const TrainingSceneOutcome outcome = writer_.write(
           {name, name}, [&](const TrainingScene& scene) { return load_scene(load, scene.name); });
-      outcomes[static_cast<std::size_t>(i)] = {name, outcome.entry, outcome.problem,
-                                               outcome.is_new};
+      outcomes[at] = {name, outcome.entry, outcome.problem, outcome.is_new};
     });
     return outcomes;
   }

@@ -297,8 +297,7 @@ PixelAlignment align_pixels(const std::vector<Eigen::MatrixXcf>& pixels, const P
     report(progress, static_cast<double>(round) / rounds, "align pixels");
     const std::vector<double> before = alignment.delay_periods;
     const double common_energy = energy(alignment.common);
-    parallel_for(static_cast<std::int64_t>(pixels.size()), [&](std::int64_t i) {
-      const auto p = static_cast<std::size_t>(i);
+    parallel_for_indices(pixels.size(), [&](std::size_t p) {
       const BestShift best =
           best_shift(products(pixels[p].cast<std::complex<double>>(), alignment.common));
       alignment.delay_periods[p] = best.shift;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "camera/frequency_lists.hpp"
 #include "camera/shared/actual_code.hpp"
@@ -178,6 +179,10 @@ OperatingPoint OperatingRange::middle() const {
 
 double ExposureTime::of(int exposure, int exposures) const {
   return each_s.empty() ? total_s / exposures : each_s.at(static_cast<std::size_t>(exposure));
+}
+
+double ExposureTime::sum_s() const {
+  return each_s.empty() ? total_s : std::accumulate(each_s.begin(), each_s.end(), 0.0);
 }
 
 std::vector<double> exposure_times_s(const CodeSet& code, const Camera& camera) {

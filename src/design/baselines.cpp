@@ -83,8 +83,7 @@ double first_error_m(const CodeSet& code, const Camera& camera, int trials, std:
 std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, const Camera& camera,
                                    int trials, std::uint64_t seed) {
   std::vector<double> errors_m(codes.size(), infinity);
-  parallel_for(std::ssize(codes), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
+  parallel_for_indices(codes.size(), [&](std::size_t at) {
     if (codes[at]) errors_m[at] = first_error_m(*codes[at], camera, trials, seed);
   });
   return errors_m;
@@ -192,8 +191,7 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   Contenders found;
   std::vector<std::optional<std::string>> reasons(names.size());
   std::vector<std::optional<CodeSet>> codes(names.size());
-  parallel_for(std::ssize(names), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
+  parallel_for_indices(names.size(), [&](std::size_t at) {
     reasons[at] = why_no_family(names[at], camera);
     if (reasons[at]) return;
     codes[at] = build_family(names[at], camera);
@@ -238,8 +236,7 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
       nearest_atlas_codes(code_atlas(), camera, options.exposures, options.atlas_cameras);
   std::vector<std::optional<std::string>> reasons(codes.size());
   std::vector<const CodeSet*> comparable(codes.size(), nullptr);
-  parallel_for(std::ssize(codes), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
+  parallel_for_indices(codes.size(), [&](std::size_t at) {
     if (first_like(codes, at) != at) return;
     reasons[at] = why_not_comparable(codes[at], camera);
     if (!reasons[at]) comparable[at] = &codes[at];

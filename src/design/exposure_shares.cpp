@@ -176,10 +176,8 @@ ExposureBound::Level ExposureBound::level(const OperatingPoint& point,
 double ExposureBound::log_deviation(const Eigen::VectorXd& shares,
                                     Eigen::VectorXd& by_shares) const {
   std::vector<Level> levels(points_.size());
-  parallel_for(std::ssize(points_), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
-    levels[at] = level(points_[at], shares);
-  });
+  parallel_for_indices(points_.size(),
+                       [&](std::size_t at) { levels[at] = level(points_[at], shares); });
   const auto count = static_cast<double>(levels.size());
   double sum = 0.0;
   by_shares = Eigen::VectorXd::Zero(exposures_);

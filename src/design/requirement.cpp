@@ -133,8 +133,7 @@ class CodePool {
   /// Evaluates codes in parallel, because few trials use only one thread.
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
-    parallel_for(std::ssize(codes), [&](std::int64_t i) {
-      const auto at = static_cast<std::size_t>(i);
+    parallel_for_indices(codes.size(), [&](std::size_t at) {
       if (!why_no_depth(*codes[at], camera))
         errors_m[at] = error_of(*codes[at], camera, first_trials());
     });

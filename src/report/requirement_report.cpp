@@ -34,14 +34,8 @@ std::string amount_text(const Camera& camera, CameraQuantity quantity) {
       return cutoff_hz(camera) > 0.0 ? plain_number(cutoff_hz(camera) / 1e6, 4) + " MHz" : "";
     case CameraQuantity::power:
       return camera.optics ? plain_number(camera.optics->source_power_w, 4) + " W" : "";
-    case CameraQuantity::exposure: {
-      double total_s = camera.exposure_s.total_s;
-      if (!camera.exposure_s.each_s.empty()) {
-        total_s = 0.0;
-        for (const double exposure_s : camera.exposure_s.each_s) total_s += exposure_s;
-      }
-      return plain_number(1e3 * total_s, 4) + " ms";
-    }
+    case CameraQuantity::exposure:
+      return plain_number(1e3 * camera.exposure_s.sum_s(), 4) + " ms";
   }
   return "";
 }

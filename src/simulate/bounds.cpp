@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "camera/shared/depth_prior.hpp"
 #include "simulate/shared/depth_information.hpp"
@@ -49,11 +48,6 @@ double mean_over_albedo(const Bound& bound, double range_m, const OperatingPoint
   return sum / nodes;
 }
 
-double total_exposure_s(const ExposureTime& exposure) {
-  if (exposure.each_s.empty()) return exposure.total_s;
-  return std::accumulate(exposure.each_s.begin(), exposure.each_s.end(), 0.0);
-}
-
 double deviation_of_depth_m(const Eigen::VectorXd& by_depth, const Eigen::VectorXd& by_signal,
                             const Eigen::VectorXd& by_ambient, double range_m) {
   return DepthPart<Eigen::VectorXd>(by_depth, by_signal, by_ambient).deviation_m(range_m);
@@ -63,8 +57,7 @@ double deviation_of_depth_m(const Eigen::VectorXd& by_depth, const Eigen::Vector
 
 DirectTofBound::DirectTofBound(const Camera& camera)
     : range_m_(camera.range_m()),
-      exposure_s_(total_exposure_s(camera.exposure_s) *
-                  (1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch))),
+      exposure_s_(camera.exposure_s.sum_s() * (1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch))),
       peak_factor_(camera.light.peak_factor),
       max_density_(DepthPrior(camera).max_density()) {
   camera.validate();

@@ -125,9 +125,9 @@ std::vector<Sums> DepthTrials::sum(std::span<const TrialRound> rounds, const Sum
   SharedProgress shared(progress, static_cast<double>(all), "depth error");
   const auto finish = [&] {
     of_run.assign(runs.size(), none);
-    parallel_for(std::ssize(runs), [&](std::int64_t i) {
-      const Run& run_of = runs[static_cast<std::size_t>(i)];
-      Sums& sums = of_run[static_cast<std::size_t>(i)];
+    parallel_for_indices(runs.size(), [&](std::size_t at) {
+      const Run& run_of = runs[at];
+      Sums& sums = of_run[at];
       TrialTile tile;
       for (std::int64_t begin = run_of.trials.begin; begin < run_of.trials.end;
            begin += trials_per_tile) {

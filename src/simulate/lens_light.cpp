@@ -107,8 +107,8 @@ DiscKernels::DiscKernels(const LensBlur& blur, int samples, std::span<const floa
   first_step_ = *used.begin();
   steps_.resize(static_cast<std::size_t>(std::ptrdiff_t{*used.rbegin()} - first_step_ + 1));
   const std::vector<int> all(used.begin(), used.end());
-  parallel_for(static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
-    const int its = all[static_cast<std::size_t>(i)];
+  parallel_for_indices(all.size(), [&](std::size_t at) {
+    const int its = all[at];
     const double radius_px = smallest_radius_px * std::exp(step * its);
     for (int row = 0; row < samples; ++row)
       for (int column = 0; column < samples; ++column)

@@ -108,8 +108,7 @@ std::vector<ItemOutcome> ItemBatch::stop() {
 }
 
 void ItemBatch::compute_all() {
-  parallel_for(static_cast<std::int64_t>(items_.size()),
-               [&](std::int64_t i) { compute(items_[static_cast<std::size_t>(i)]); });
+  parallel_for_indices(items_.size(), [&](std::size_t at) { compute(items_[at]); });
   const std::lock_guard lock(mutex_);
   done_ = true;
   changed_.notify_all();
@@ -168,10 +167,8 @@ void keep(const std::vector<ItemOutcome>& outcomes, SweepQueue& queue, SweepRun&
 
 std::vector<ItemOutcome> compute_items(const WorkList& list, std::span<const ClaimedItem> items) {
   std::vector<ItemOutcome> outcomes(items.size());
-  parallel_for(static_cast<std::int64_t>(items.size()), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
-    outcomes[at] = outcome_of(list, items[at], {});
-  });
+  parallel_for_indices(items.size(),
+                       [&](std::size_t at) { outcomes[at] = outcome_of(list, items[at], {}); });
   return outcomes;
 }
 

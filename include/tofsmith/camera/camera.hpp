@@ -204,6 +204,7 @@ struct ExposureTime {
   double total_s = 0.3;        ///< used if `each_s` is empty
   std::vector<double> each_s;  ///< one per exposure of the code
   double of(int exposure, int exposures) const;
+  double sum_s() const;
 
   friend bool operator==(const ExposureTime&, const ExposureTime&) = default;
 };

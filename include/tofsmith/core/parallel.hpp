@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 
@@ -22,6 +23,12 @@ void parallel_for_blocks(std::int64_t count, std::int64_t block,
 
 /// Calls `work(i)` for every i in [0, count), on all threads, or on one without TBB.
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work);
+
+/// As parallel_for(), for indices of containers.
+inline void parallel_for_indices(std::size_t count, const std::function<void(std::size_t)>& work) {
+  parallel_for(static_cast<std::int64_t>(count),
+               [&](std::int64_t i) { work(static_cast<std::size_t>(i)); });
+}
 
 /// Limits the number of threads during its lifetime; 0: all cores.
 class ThreadLimit {

@@ -159,8 +159,7 @@ BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>&
                           starts.codes()[static_cast<std::size_t>(i) % starts.codes().size()].code,
                           options.seed, static_cast<std::uint64_t>(i), options.finalists);
     std::vector<ChipSearchCounts> counted(chains.size());
-    parallel_for(count, [&](std::int64_t i) {
-      const auto at = static_cast<std::size_t>(i);
+    parallel_for_indices(chains.size(), [&](std::size_t at) {
       chains[at].run(options.annealing_steps, counted[at], shared);
     });
     for (std::size_t i = 0; i < chains.size(); ++i) {

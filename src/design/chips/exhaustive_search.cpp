@@ -198,8 +198,7 @@ std::vector<TapAssignment> tap_assignments(const AssignmentRules& rules) {
         (!rules.equal_duty || std::popcount(word) * rules.taps <= rules.chips))
       firsts.push_back(word);
   std::vector<std::vector<TapAssignment>> parts(firsts.size());
-  parallel_for(std::ssize(firsts), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
+  parallel_for_indices(firsts.size(), [&](std::size_t at) {
     parts[at] = FirstTapLister(rules, kind, firsts[at]).take();
   });
   std::vector<TapAssignment> all;

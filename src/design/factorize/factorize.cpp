@@ -132,9 +132,9 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   std::vector<StartResult> runs(static_cast<std::size_t>(options.random_starts));
   const ProgressParts parts(progress, {60, 40});
   SharedProgress shared(parts[0], options.random_starts, "alternating convex steps");
-  parallel_for(std::ssize(runs), [&](std::int64_t i) {
+  parallel_for_indices(runs.size(), [&](std::size_t at) {
     shared.add();
-    runs[static_cast<std::size_t>(i)] = run_start(model, options, static_cast<int>(i));
+    runs[at] = run_start(model, options, static_cast<int>(at));
   });
   for (const StartResult& run : runs) {
     result.candidates.push_back(run.candidate);

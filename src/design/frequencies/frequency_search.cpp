@@ -269,10 +269,8 @@ void search_branch(const std::vector<SquareCode>& sets, const FrequencyChoice& c
                    const SquareErrorEstimate& estimate, Best& best, FrequencySearch& search) {
   constexpr std::size_t at_a_time = 64;
   std::vector<double> bounds_m(sets.size());
-  parallel_for(std::ssize(sets), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
-    bounds_m[at] = estimate.lower_bound_m(sets[at]);
-  });
+  parallel_for_indices(sets.size(),
+                       [&](std::size_t at) { bounds_m[at] = estimate.lower_bound_m(sets[at]); });
   std::vector<std::size_t> order(sets.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
@@ -284,8 +282,7 @@ void search_branch(const std::vector<SquareCode>& sets, const FrequencyChoice& c
     }
     const std::size_t count = std::min(at_a_time, order.size() - begin);
     std::vector<RatedCode> estimated(count);
-    parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t i) {
-      const auto at = static_cast<std::size_t>(i);
+    parallel_for_indices(count, [&](std::size_t at) {
       estimated[at] = with_best_split(sets[order[begin + at]], choice, estimate);
     });
     for (RatedCode& its : estimated) best.add(std::move(its));

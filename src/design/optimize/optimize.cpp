@@ -119,16 +119,14 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const Cod
                              combine_keys(first_key, before + i), &shared);
     code.log_error_bin = judge.score(sampled_on(problem.space, code.code)).log_error_bin;
   };
-  parallel_for(std::ssize(entries), [&](std::int64_t index) {
-    const auto i = static_cast<std::size_t>(index);
+  parallel_for_indices(entries.size(), [&](std::size_t i) {
     const PoolEntry& entry = entries[i];
     finished[i].code = binarized(problem, render(problem.space, entry.parameters, sharpness));
     finished[i].start = entry.start;
     polish(finished[i], options.trials_per_step, key, i);
   });
   sort_by_error(finished);
-  parallel_for(static_cast<std::int64_t>(again), [&](std::int64_t index) {
-    const auto i = static_cast<std::size_t>(index);
+  parallel_for_indices(again, [&](std::size_t i) {
     FinishedCode precise = finished[i];
     polish(precise, more_trials * options.trials_per_step, combine_keys(precise_key, key), i);
     if (precise.log_error_bin < finished[i].log_error_bin) finished[i] = std::move(precise);

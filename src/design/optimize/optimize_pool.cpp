@@ -333,8 +333,7 @@ std::vector<OptimizeStart> best_mixtures(const DesignProblem& problem, std::ptrd
   const CodeJudge judge(problem, trials, seed, work_item(Phase::judging, 2));
   std::vector<std::pair<double, std::size_t>> ranked(all.size());
   SharedProgress shared(progress, static_cast<double>(all.size()), "mixtures of frequencies");
-  parallel_for(std::ssize(all), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
+  parallel_for_indices(all.size(), [&](std::size_t at) {
     shared.add();
     const SampledCode code = render(problem.space, all[at].parameters, final_sharpness(problem));
     ranked[at] = {judge.score(code).log_error_bin, at};
@@ -381,11 +380,10 @@ void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, doubl
                                  .final_sharpness = final_sharpness(*problem_)};
   const double contending =
       entries_.empty() ? infinity : entries_.front().score.log_error_bin + contending_log_ratio;
-  parallel_for(std::ssize(entries), [&](std::int64_t i) {
-    PoolEntry& entry = entries[static_cast<std::size_t>(i)];
-    entry.parameters =
-        descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
-                work_item(phase, first_item + static_cast<std::size_t>(i)), &progress);
+  parallel_for_indices(entries.size(), [&](std::size_t at) {
+    PoolEntry& entry = entries[at];
+    entry.parameters = descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
+                               work_item(phase, first_item + at), &progress);
     const SampledCode code = render(problem_->space, entry.parameters, schedule.final_sharpness);
     entry.score = quick_judge_.score(code);
     if (entry.score.log_error_bin < contending) entry.score = judge_.score(code);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -42,11 +41,6 @@ Eigen::VectorXd sensitivities(int exposures, int taps, double mismatch) {
   return sensitivity;
 }
 
-double total_exposure_s(const ExposureTime& exposure) {
-  if (exposure.each_s.empty()) return exposure.total_s;
-  return std::accumulate(exposure.each_s.begin(), exposure.each_s.end(), 0.0);
-}
-
 }  // namespace
 
 bool sees_ambient(const Camera& camera, int exposures) {
@@ -75,7 +69,7 @@ SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures, b
       ambient_unknown_(sees_ambient(camera, exposures)),
       squares_(squares),
       transfer_(grid_transfer(camera, samples) / static_cast<double>(samples)),
-      total_s_(total_exposure_s(camera.exposure_s)),
+      total_s_(camera.exposure_s.sum_s()),
       dark_e_per_s_(camera.sensor.dark_current_e_per_s),
       read_variance_e2_(constant_variance_e2_of(camera.sensor)) {
   const int tap_values = exposures * taps_;

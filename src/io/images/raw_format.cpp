@@ -18,23 +18,12 @@ namespace tofsmith {
 
 namespace {
 
-int container_of(const RawFormat& format) {
-  if (format.container_bits > 0) return format.container_bits;
-  return format.bits <= 8 ? 8 : format.bits <= 16 ? 16 : 32;
-}
-
 bool is_bit_stream(RawPacking packing) {
   return packing == RawPacking::lsb_first || packing == RawPacking::msb_first;
 }
 
 /// A MIPI group consists of whole bytes.
 int mipi_group(int bits) { return bits == 12 ? 2 : 4; }
-
-int bits_per_number(const RawFormat& format) {
-  if (format.numbers == RawNumbers::floats || format.packing != RawPacking::plain)
-    return format.bits;
-  return container_of(format);
-}
 
 void validate_numbers(const RawFormat& f) {
   if (f.numbers == RawNumbers::floats) {
@@ -51,7 +40,7 @@ void validate_numbers(const RawFormat& f) {
   }
   require(f.bits >= 1 && f.bits <= 32, "bits", f.bits, "must be in [1, 32] for integers");
   if (f.packing == RawPacking::plain) {
-    const int c = container_of(f);
+    const int c = f.stored_bits();
     require((c == 8 || c == 16 || c == 32) && c >= f.bits, "container_bits", c,
             fmt::format("must be 8, 16 or 32 and hold bits = {}", f.bits));
     return;
@@ -118,6 +107,12 @@ void validate_rows(const RawFormat& f) {
 
 }  // namespace
 
+int RawFormat::stored_bits() const {
+  if (numbers == RawNumbers::floats || packing != RawPacking::plain) return bits;
+  if (container_bits > 0) return container_bits;
+  return bits <= 8 ? 8 : bits <= 16 ? 16 : 32;
+}
+
 std::size_t RawFormat::numbers_per_row() const {
   return static_cast<std::size_t>(width) *
          static_cast<std::size_t>(layout == RawOrder::interleaved ? measurements : 1);
@@ -133,9 +128,7 @@ std::size_t RawFormat::images() const {
 }
 
 std::uint64_t RawFormat::tight_row_bytes() const {
-  return (std::uint64_t{numbers_per_row()} * static_cast<std::uint64_t>(bits_per_number(*this)) +
-          7) /
-         8;
+  return (std::uint64_t{numbers_per_row()} * static_cast<std::uint64_t>(stored_bits()) + 7) / 8;
 }
 
 std::uint64_t RawFormat::row_pitch_bytes() const {
@@ -146,7 +139,7 @@ std::uint64_t RawFormat::row_pitch_bytes() const {
 std::uint64_t RawFormat::image_bytes() const {
   if (rows_start_bytes) return row_pitch_bytes() * rows_per_image();
   const std::uint64_t bits_of_image = std::uint64_t{numbers_per_row()} * rows_per_image() *
-                                      static_cast<std::uint64_t>(bits_per_number(*this));
+                                      static_cast<std::uint64_t>(stored_bits());
   return (bits_of_image + 7) / 8;
 }
 

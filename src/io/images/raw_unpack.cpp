@@ -30,11 +30,6 @@ Value load(const std::byte* from, bool big_endian) {
   return load_little_endian<Value>(turned.data());
 }
 
-int container_bits_of(const RawFormat& format) {
-  if (format.container_bits > 0) return format.container_bits;
-  return format.bits <= 8 ? 8 : format.bits <= 16 ? 16 : 32;
-}
-
 /// Returns true if unused bits are zero or, above a signed number, copies of its sign.
 bool fits(const RawFormat& format, std::uint64_t container, int container_bits) {
   const int unused = container_bits - format.bits;
@@ -131,10 +126,8 @@ void unpack_stream(const RawFormat& format, std::span<const std::byte> row, int 
 
 std::optional<OversizedNumber> find_oversized_number(const RawFormat& format,
                                                      std::span<const std::byte> row) {
-  const int container = container_bits_of(format);
-  if (format.numbers == RawNumbers::floats || format.packing != RawPacking::plain ||
-      format.unused_bits == UnusedBits::ignored || container == format.bits)
-    return std::nullopt;
+  const int container = format.stored_bits();
+  if (format.unused_bits == UnusedBits::ignored || container == format.bits) return std::nullopt;
   if (container == 8) return find_oversized<std::uint8_t>(format, row);
   if (container == 16) return find_oversized<std::uint16_t>(format, row);
   return find_oversized<std::uint32_t>(format, row);
@@ -149,7 +142,7 @@ void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int
                              : unpack_floats<double>(format, row.data(), numbers);
   if (format.packing == RawPacking::mipi) return unpack_mipi(format, row.data(), numbers);
   if (format.packing != RawPacking::plain) return unpack_stream(format, row, first_bit, numbers);
-  const int container = container_bits_of(format);
+  const int container = format.stored_bits();
   if (container == 8) return unpack_plain<std::uint8_t>(format, row.data(), numbers);
   if (container == 16) return unpack_plain<std::uint16_t>(format, row.data(), numbers);
   unpack_plain<std::uint32_t>(format, row.data(), numbers);
