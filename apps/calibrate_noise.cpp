@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include "calibrate_output.hpp"
 #include "described_options.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"

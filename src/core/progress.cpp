@@ -3,7 +3,6 @@
 #include "tofsmith/core/progress.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 

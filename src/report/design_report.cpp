@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <limits>
 
 #include "report/design_sections.hpp"
 #include "report/shared/table_of_rows.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "decode/search/shared/bin_records.hpp"
 #include "tofsmith/camera/camera.hpp"

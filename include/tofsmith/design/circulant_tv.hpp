@@ -5,8 +5,6 @@
 #include <Eigen/Core>
 #include <limits>
 #include <optional>
-#include <string>
-#include <string_view>
 
 #include "tofsmith/core/hidden.hpp"
 #include "tofsmith/design/design.hpp"
