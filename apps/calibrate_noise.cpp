@@ -5,7 +5,6 @@
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith::apps {

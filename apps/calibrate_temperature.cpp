@@ -8,7 +8,6 @@
 #include "tofsmith/calibrate/calibration_reports.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 

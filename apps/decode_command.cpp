@@ -19,7 +19,6 @@
 #include "described_options.hpp"
 #include "help_pages.hpp"
 #include "method_arguments.hpp"
-#include "number_checks.hpp"
 #include "recorded_with.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"

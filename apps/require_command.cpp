@@ -13,7 +13,6 @@
 #include "distance_arguments.hpp"
 #include "fresh_directory.hpp"
 #include "method_arguments.hpp"
-#include "number_checks.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/units.hpp"

@@ -4,7 +4,6 @@
 
 #include "bindings.hpp"
 #include "options.hpp"
-#include "progress.hpp"
 #include "reports.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/calibration_reports.hpp"

@@ -8,7 +8,6 @@
 #include "camera/shared/depth_prior.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/core/units.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "scene/rigid.hpp"
-#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {

@@ -16,7 +16,6 @@
 #include "simulate/pixel_trials.hpp"
 #include "simulate/shared/camera_bounds.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
-#include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 
 namespace tofsmith {

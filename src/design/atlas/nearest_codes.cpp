@@ -9,7 +9,6 @@
 
 #include "code/shared/on_intervals.hpp"
 #include "design/baselines.hpp"
-#include "design/judge.hpp"
 #include "design/run_lengths.hpp"
 #include "tofsmith/core/units.hpp"
 

@@ -19,7 +19,6 @@
 
 #include "io/byte_cursor.hpp"
 #include "io/image_limits.hpp"
-#include "io/shared/byte_order.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 
