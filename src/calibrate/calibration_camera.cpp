@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "io/arrays/shared/array_matrix.hpp"
-#include "io/arrays/shared/correction_arrays.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "decode/search/nearest_bins.hpp"
+#include "decode/output/pixel_output.hpp"
 
 namespace tofsmith {
 

@@ -13,7 +13,6 @@
 #include "decode/output/pixel_output.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
 #include "decode/search/chord_matcher.hpp"
-#include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 

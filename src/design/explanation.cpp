@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/explanation.hpp"
+#include "design/judge.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -12,7 +12,6 @@
 
 #include "camera/shared/depth_prior.hpp"
 #include "design/baselines.hpp"
-#include "design/explanation.hpp"
 #include "design/exposure_split.hpp"
 #include "simulate/shared/camera_bounds.hpp"
 #include "tofsmith/core/error.hpp"

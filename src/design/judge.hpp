@@ -35,4 +35,10 @@ void require_judgeable(const Camera& camera, const DesignOptions& options);
 void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,
                       const Progress& progress);
 
+/// Explains the winner: its lead, its number of exposures, and the limits of its error in dim and
+/// in bright light.
+/// @param exposures  requested numbers; empty: any
+std::vector<std::string> explain(const Camera& camera, const DesignResult& result,
+                                 const std::vector<int>& exposures = {});
+
 }  // namespace tofsmith

@@ -14,7 +14,6 @@
 
 #include "core/shared/random.hpp"
 #include "design/baselines.hpp"
-#include "design/explanation.hpp"
 #include "design_setup.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 #include "tofsmith/code/families.hpp"

@@ -11,7 +11,6 @@
 #include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "core/shared/special_functions.hpp"
-#include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "core/shared/shared_progress.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
-#include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <functional>
 
 #include "decode/output/pixel_model.hpp"
@@ -31,6 +33,11 @@ void store_invalid(std::size_t at, const DecodedView& decoded);
 void require_measurements(const RawView& raw, int measurements);
 
 double probability_of(double log_odds);
+
+/// Returns the bin in [0, samples) nearest to a position in [0, samples].
+inline std::int32_t nearest_bin(double depth_bin, int samples) {
+  return static_cast<std::int32_t>(std::lround(depth_bin)) % samples;
+}
 
 /// For fast decoders; slow ones use smaller blocks, to be cancelled sooner.
 inline constexpr std::int64_t usual_block_pixels = 16384;

@@ -20,7 +20,6 @@
 #include "decode/output/lobe_posterior.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
-#include "decode/search/nearest_bins.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "decode/unwrap/phase_unwrapper.hpp"
 #include "tofsmith/core/error.hpp"

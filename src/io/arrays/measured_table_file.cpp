@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "io/arrays/shared/array_matrix.hpp"
-#include "io/arrays/shared/correction_arrays.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -23,6 +22,59 @@ namespace tofsmith {
 namespace {
 
 constexpr Eigen::Index max_table_samples = 65536, max_table_measurements = 64;
+
+/// Prefix of arrays such as correction_height.
+constexpr std::string_view correction_prefix = "correction_";
+
+/// Includes the fields of nested DepthErrorTerms.
+template <typename Struct, typename Visit>
+void for_each_array(Struct& its, const std::string& prefix, const Visit& visit) {
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    const std::string name = prefix + field.name;
+    if constexpr (std::is_same_v<Value, DepthErrorTerms>)
+      for_each_array(field.value, name + "_", visit);
+    else
+      visit(name, field.value);
+  });
+}
+
+std::vector<double> read_numbers(const NpzReader& archive, const std::string& file,
+                                 const std::string& name) {
+  const NpyArray array = archive.read(name);
+  if (array.axes() > 1)
+    throw IoError(fmt::format("{}: {}", file, name),
+                  fmt::format("found the shape {}; expected one number or a list",
+                              describe_shape(array.shape())));
+  return array.to_doubles();
+}
+
+/// Returns none if the archive has no depth correction.
+/// @throws IoError naming file and array if it is missing, invalid or of another shape
+std::optional<DepthCorrection> correction_of(const NpzReader& archive, const std::string& file) {
+  if (!archive.contains(std::string(correction_prefix) + "height")) return std::nullopt;
+  DepthCorrection correction;
+  for_each_array(
+      correction, std::string(correction_prefix), [&](const std::string& name, auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const std::vector<double> numbers = read_numbers(archive, file, name);
+        if constexpr (std::is_arithmetic_v<Value>) {
+          constexpr auto largest = static_cast<double>(std::numeric_limits<Value>::max());
+          if (numbers.size() != 1 || !(std::abs(numbers[0]) <= largest))
+            throw IoError(fmt::format("{}: {}", file, name), "expected one finite number");
+          value = static_cast<Value>(numbers[0]);
+        } else {
+          value = Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                                    static_cast<Eigen::Index>(numbers.size()));
+        }
+      });
+  try {
+    correction.validate();
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file, error.what());
+  }
+  return correction;
+}
 
 bool can_be_table(Eigen::Index samples, Eigen::Index measurements) {
   return samples >= min_samples && samples <= max_table_samples && measurements >= 1 &&
@@ -229,33 +281,6 @@ MeasuredTableFile read_measured_table(const std::filesystem::path& path,
   return file;
 }
 
-namespace {
-
-/// Includes the fields of nested DepthErrorTerms.
-template <typename Struct, typename Visit>
-void for_each_array(Struct& its, const std::string& prefix, const Visit& visit) {
-  for_each_field(its, [&](const auto& field) {
-    using Value = std::remove_cvref_t<decltype(field.value)>;
-    const std::string name = prefix + field.name;
-    if constexpr (std::is_same_v<Value, DepthErrorTerms>)
-      for_each_array(field.value, name + "_", visit);
-    else
-      visit(name, field.value);
-  });
-}
-
-std::vector<double> read_numbers(const NpzReader& archive, const std::string& file,
-                                 const std::string& name) {
-  const NpyArray array = archive.read(name);
-  if (array.axes() > 1)
-    throw IoError(fmt::format("{}: {}", file, name),
-                  fmt::format("found the shape {}; expected one number or a list",
-                              describe_shape(array.shape())));
-  return array.to_doubles();
-}
-
-}  // namespace
-
 void add_correction(const DepthCorrection& correction, NpzArrays& arrays) {
   for_each_array(correction, std::string(correction_prefix),
                  [&](const std::string& name, const auto& value) {
@@ -269,31 +294,6 @@ void add_correction(const DepthCorrection& correction, NpzArrays& arrays) {
                    }
                    arrays.emplace(name, NpyArray::of<double>(shape, numbers));
                  });
-}
-
-std::optional<DepthCorrection> correction_of(const NpzReader& archive, const std::string& file) {
-  if (!archive.contains(std::string(correction_prefix) + "height")) return std::nullopt;
-  DepthCorrection correction;
-  for_each_array(
-      correction, std::string(correction_prefix), [&](const std::string& name, auto& value) {
-        using Value = std::remove_cvref_t<decltype(value)>;
-        const std::vector<double> numbers = read_numbers(archive, file, name);
-        if constexpr (std::is_arithmetic_v<Value>) {
-          constexpr auto largest = static_cast<double>(std::numeric_limits<Value>::max());
-          if (numbers.size() != 1 || !(std::abs(numbers[0]) <= largest))
-            throw IoError(fmt::format("{}: {}", file, name), "expected one finite number");
-          value = static_cast<Value>(numbers[0]);
-        } else {
-          value = Eigen::Map<const Eigen::VectorXd>(numbers.data(),
-                                                    static_cast<Eigen::Index>(numbers.size()));
-        }
-      });
-  try {
-    correction.validate();
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file, error.what());
-  }
-  return correction;
 }
 
 }  // namespace tofsmith

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/documents/camera_document.hpp"
+#include "io/documents/shared/document_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +12,6 @@
 #include <sstream>
 
 #include "core/shared/text_numbers.hpp"
-#include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/field_toml.hpp"

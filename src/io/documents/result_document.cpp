@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "io/documents/camera_document.hpp"
 #include "io/documents/shared/document_text.hpp"
 #include "io/text/field_json.hpp"
 #include "tofsmith/core/units.hpp"

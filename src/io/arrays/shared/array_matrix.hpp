@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "tofsmith/core/image.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/npy.hpp"
 
@@ -56,6 +57,8 @@ std::vector<double> read_one_axis(const std::filesystem::path& path);
 
 NpyArray array_of(const Eigen::MatrixXd& matrix);
 NpyArray array_of(const Image<float>& image);
+
+void add_correction(const DepthCorrection& correction, NpzArrays& arrays);
 
 /// An array that is read in parts. Thread-safe.
 struct StoredArray {

@@ -26,6 +26,9 @@ std::string format_json(const nlohmann::ordered_json& document);
 /// @throws std::invalid_argument if a text is not UTF-8
 std::string format_toml(const nlohmann::ordered_json& document);
 
+/// Fills in defaults. @throws std::invalid_argument if the camera is invalid
+nlohmann::ordered_json camera_document(const Camera& camera);
+
 nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rotation_bin);
 
 /// Entries do not contain standard errors of outlier rates.
