@@ -99,14 +99,9 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
         {.filter = filter ? &filter->filter() : nullptr,
          .keeps_filtered = corrections.mixed || corrections.limits || planes.view().averaged},
         raw.height, raw.width);
-    std::vector<float> signal;  // if only the correction needs it
-    if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
-      signal.resize(pixels);
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
-      DecodedView decoded = planes.view().from(f * pixels);
-      if (!signal.empty()) decoded.signal_e_per_s = signal.data();
       pipeline->submit(raw.frames[f]);
-      decode_frame(*pipeline, corrections, 0, raw.height, decoded, parts[f]);
+      decode_frame(*pipeline, corrections, 0, raw.height, planes.view().from(f * pixels), parts[f]);
     }
   });
 }

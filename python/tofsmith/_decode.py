@@ -175,8 +175,7 @@ class Decoder:
             Detects pixels at depth edges that see two surfaces and sets their status to mixed:
             label keeps their depth, snap replaces it by that of the nearest pixel of the brighter
             surface, drop removes it. With `filter`, frames are filtered again without these pixels.
-            Requires the planes depth, predicted standard deviation and status. See
-            docs/filtering.md.
+            See docs/filtering.md.
         min_depth_m, max_depth_m : float, optional
             Smallest and largest radial depth after all corrections [m]: only depths between them
             are candidates, and other pixels are too_near or too_far. None: the camera's working

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -158,14 +159,14 @@ void keep_averaged(const RawView& raw, float* averaged) {
     std::fill_n(averaged, raw.pixels(), 1.0f);
 }
 
-/// Adds the planes that depth limits need and `decoded` lacks.
+/// Adds the planes of `needed` that `decoded` lacks.
 /// @return memory of the added planes
-DepthImage planes_for_limits(std::size_t pixels, DecodedView& decoded) {
+DepthImage add_missing_planes(const std::vector<DecodedPlane>& needed, std::size_t pixels,
+                              DecodedView& decoded) {
   const std::vector<DecodedPlane> wanted = decoded.planes();
   std::vector<DecodedPlane> missing;
-  for (const DecodedPlane plane :
-       {DecodedPlane::depth, DecodedPlane::confidence, DecodedPlane::status})
-    if (std::find(wanted.begin(), wanted.end(), plane) == wanted.end()) missing.push_back(plane);
+  std::set_difference(needed.begin(), needed.end(), wanted.begin(), wanted.end(),
+                      std::back_inserter(missing));
   DepthImage image(missing, 1, static_cast<int>(pixels));
   for_each_plane(
       [](auto*& plane, auto& added) {
@@ -181,7 +182,6 @@ void decode_once(FramePipeline& pipeline, const PlaneCorrections& corrections, s
   DecodedView decoded = wanted;
   decoded.averaged = nullptr;  // written below
   const auto& limits = corrections.limits;
-  const DepthImage unwanted = limits ? planes_for_limits(pixels, decoded) : DepthImage();
   const ProgressParts parts(progress, {1.0, limits ? 1.0 : 0.0});
   pipeline.decode(decoded, parts[0], unfiltered.mixed);
   if (limits)
@@ -209,23 +209,38 @@ std::unique_ptr<FrameBackend> cpu_backend(std::unique_ptr<const DepthDecoder> de
   return std::make_unique<CpuBackend>(std::move(decoder));
 }
 
+std::vector<DecodedPlane> planes_for(const PlaneCorrections& corrections,
+                                     const DecodingTable& table) {
+  const bool needs_signal = table.correction && table.correction->needs_signal();
+  std::vector<DecodedPlane> planes;
+  if (corrections.limits || corrections.mixed) planes = {DecodedPlane::depth, DecodedPlane::status};
+  if (needs_signal) planes.push_back(DecodedPlane::signal);
+  if (corrections.limits) planes.push_back(DecodedPlane::confidence);
+  if (corrections.mixed) planes.push_back(DecodedPlane::deviation);
+  std::sort(planes.begin(), planes.end());
+  return planes;
+}
+
 void decode_frame(FramePipeline& pipeline, const PlaneCorrections& corrections, int first_row,
                   int rows, const DecodedView& decoded, const Progress& progress) {
   const auto width = static_cast<std::size_t>(pipeline.width()),
              first = static_cast<std::size_t>(first_row) * width,
              pixels = static_cast<std::size_t>(rows) * width;
+  DecodedView planes = decoded;
+  const DepthImage added =
+      add_missing_planes(planes_for(corrections, pipeline.table()), pixels, planes);
   if (!pipeline.steps().filter || !corrections.mixed)
-    return decode_once(pipeline, corrections, first, pixels, decoded, {}, progress);
+    return decode_once(pipeline, corrections, first, pixels, planes, {}, progress);
   const ProgressParts parts(progress, {1.0, 1.0});
   const RawView measured = pipeline.measured();
   UnfilteredPixels unfiltered{.measured = &measured};
-  decode_once(pipeline, corrections, first, pixels, decoded, unfiltered, parts[0]);
+  decode_once(pipeline, corrections, first, pixels, planes, unfiltered, parts[0]);
   const auto is_mixed = [](PixelStatus status) { return status == PixelStatus::mixed; };
-  const PixelStatus* const statuses = decoded.status;
-  if (!statuses || std::none_of(statuses, statuses + pixels, is_mixed)) return;
+  const PixelStatus* const statuses = planes.status;
+  if (std::none_of(statuses, statuses + pixels, is_mixed)) return;
   unfiltered.mixed = Image<std::uint8_t>(rows, pipeline.width());
   std::transform(statuses, statuses + pixels, unfiltered.mixed.pixels.begin(), is_mixed);
-  decode_once(pipeline, corrections, first, pixels, decoded, unfiltered, parts[1]);
+  decode_once(pipeline, corrections, first, pixels, planes, unfiltered, parts[1]);
 }
 
 }  // namespace tofsmith

@@ -293,6 +293,21 @@ TEST(DepthLimits, MultipathMethodsKeepToThem) {
   }
 }
 
+TEST(DepthLimits, AndOtherCorrectionsRequireTheirPlanes) {
+  using enum DecodedPlane;
+  DecodingTable table = two_frequency_table();
+  PlaneCorrections corrections;
+  EXPECT_THAT(planes_for(corrections, table), testing::IsEmpty());
+  corrections.limits = DepthLimits{1.0, 2.5};
+  EXPECT_THAT(planes_for(corrections, table), testing::ElementsAre(depth, confidence, status));
+  corrections.mixed = MixedPixels::label;
+  EXPECT_THAT(planes_for(corrections, table),
+              testing::ElementsAre(depth, confidence, deviation, status));
+  table.correction = DepthCorrection{.height = 1, .width = 1};
+  table.correction->known.signal_m = Eigen::VectorXd::Ones(1);
+  EXPECT_THAT(planes_for({}, table), testing::ElementsAre(signal));
+}
+
 TEST(DepthLimits, HoldForDepthsAfterTheOffsetMap) {
   Camera camera = camera_with("paper-10f0");
   camera.fundamental_frequency_hz = 48e6;

@@ -11,6 +11,7 @@
 #include "decode_setup.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/decode/frame_pipeline.hpp"
 
 namespace tofsmith {
 namespace {
@@ -142,6 +143,16 @@ TEST_F(MixedPixelsOfFrames, DroppedPixelsHaveNoValues) {
     EXPECT_EQ(std::isnan(image.signal_e_per_s.pixels[i]), is_mixed);
     EXPECT_EQ(std::isnan(image.confidence.pixels[i]), is_mixed);
   }
+}
+
+TEST_F(MixedPixelsOfFrames, AreTheSameIfOnlyDepthIsRequested) {
+  const auto backend = cpu_backend(make_decoder(DecodeMethod::zncc, table));
+  const auto pipeline = backend->prepare({}, height, width);
+  ASSERT_TRUE(pipeline->submit(view_of_frame(edge_frame, 0)));
+  DepthImage image({DecodedPlane::depth}, height, width);
+  decode_frame(*pipeline, {.maps = {}, .mixed = MixedPixels::snap}, 0, height,
+               DecodedView::of(image));
+  EXPECT_EQ(image.depth_m.pixels, marked(setup, edge_frame, MixedPixels::snap).depth_m.pixels);
 }
 
 TEST_F(MixedPixelsOfFrames, SurfacesAndObjectsOnePixelWideAreUnchanged) {

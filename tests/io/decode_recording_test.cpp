@@ -271,6 +271,25 @@ TEST_F(DecodeRecording, ClippedAndInvalidPixelsOfOneFrameStaySoInTheMean) {
   EXPECT_EQ(result.total().of(PixelStatus::invalid), 2);
 }
 
+TEST_F(DecodeRecording, MemoryIncludesThePlanesThatDepthLimitsRequire) {
+  DecodeRequest asked = request("d.npz");
+  asked.outputs = {DecodedPlane::depth};
+  asked.memory_mb = 1e-6;
+  const auto required_mb = [&] {
+    try {
+      decode_recording(asked, *backend_);
+    } catch (const IoError& error) {
+      const std::string text = error.what(), before = " require ";
+      return std::stod(text.substr(text.find(before) + before.size()));
+    }
+    return 0.0;
+  };
+  const double without_mb = required_mb();
+  asked.max_depth_m = 1.0;
+  constexpr double planes_mb = 1e-6 * 6 * 5 * 5;  // confidence and status
+  EXPECT_NEAR(required_mb() - without_mb, planes_mb, 2e-6);
+}
+
 TEST_F(DecodeRecording, RejectsInvalidRequestsBeforeWriting) {
   const int before = directory_.files();
   DecodeRequest wrong;

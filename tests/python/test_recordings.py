@@ -75,7 +75,7 @@ def test_filtered_frames_decode_like_recordings(edge, mixed, tmp_path):
     decoder = ts.Decoder(*MIXED)
     expected = recorded(decoder, edge, tmp_path, filter="light", mixed=mixed)
     for filter in ("light", {"strength": "light"}, ts.Filter(*MIXED, strength="light")):
-        found = decoder.decode(edge, filter=filter, mixed=mixed)
+        found = decoder.decode(edge, planes=PLANES, filter=filter, mixed=mixed)
         np.testing.assert_array_equal(found.status, expected.status)
         np.testing.assert_array_equal(found.depth_m, expected.depth_m)
     assert (found.status == ts.PixelStatus.mixed).any() == (mixed is not None)

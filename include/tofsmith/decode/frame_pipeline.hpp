@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/depth_limits.hpp"
@@ -108,11 +109,16 @@ struct PlaneCorrections {
   std::optional<DepthLimits> limits = {};
 };
 
+/// Returns the planes that corrections require, in the order of DecodedPlane.
+std::vector<DecodedPlane> planes_for(const PlaneCorrections& corrections,
+                                     const DecodingTable& table);
+
 /// Decodes the ready frame, or rows of it, and corrects its planes. With a spatial filter, the
 /// plane `averaged` requires FrameSteps::keeps_filtered, and a frame with mixed pixels is filtered
 /// again without them.
 /// @param first_row, rows  submitted rows
-/// @param decoded          planes whose first value belongs to the first row
+/// @param decoded          planes whose first value belongs to the first row; memory for absent
+///                         ones of planes_for() is allocated
 /// @throws as FramePipeline::decode()
 void decode_frame(FramePipeline& pipeline, const PlaneCorrections& corrections, int first_row,
                   int rows, const DecodedView& decoded, const Progress& progress = {});

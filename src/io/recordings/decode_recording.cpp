@@ -187,8 +187,6 @@ DecodeTarget target_of(const DecodeRequest& request, const DepthDecoder& decoder
           .count_statuses = request.outputs.empty() ||
                             std::ranges::count(request.outputs, DecodedPlane::status) > 0,
           .all_points = request.all_points,
-          .find_mixed = request.mixed.has_value(),
-          .needs_signal = table.correction && table.correction->needs_signal(),
           .as_z = as_z,
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
@@ -372,6 +370,7 @@ void decode_recording(const DecodeRequest& request, const FrameBackend& backend,
   DecodeTarget asked = target_of(request, decoder, reader);
   const PlaneCorrections corrections =
       corrections_of(request, table, request.raw.front().string(), reader.height(), reader.width());
+  asked.correction_planes = planes_for(corrections, table);
   check_inputs_are_kept(request, asked);
   DecodeOutput output(std::move(asked));
   const DecodeTarget& target = output.target();

@@ -151,8 +151,7 @@ void decode_stream(const DecodeRequest& asked, const FrameBackend& backend, cons
   const DecodeTarget target{
       .planes = planes_to_write(request, decoder),
       .count_statuses = std::ranges::count(request.outputs, DecodedPlane::status) > 0,
-      .find_mixed = request.mixed.has_value(),
-      .needs_signal = table.correction && table.correction->needs_signal(),
+      .correction_planes = planes_for(corrections, table),
       .as_z = request.kind == DepthKind::z,
       .view = view,
       .pixel_rays = request.kind == DepthKind::z ? rays_of(request.lens, view) : PixelRays(),

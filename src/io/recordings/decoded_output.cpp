@@ -294,11 +294,7 @@ std::vector<DecodedPlane> DecodeTarget::needed_planes() const {
     if (!all_points) need(DecodedPlane::status);
   }
   if (count_statuses) need(DecodedPlane::status);
-  if (needs_signal) need(DecodedPlane::signal);
-  if (find_mixed)
-    for (const DecodedPlane plane :
-         {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::status})
-      need(plane);
+  for (const DecodedPlane plane : correction_planes) need(plane);
   return needed;
 }
 

@@ -76,9 +76,8 @@ struct DecodeTarget {
   std::vector<DecodedPlane> planes;
   bool count_statuses = true;  ///< even if the status plane is not written
   bool all_points = false;
-  bool find_mixed = false;
-  bool needs_signal = false;  ///< to correct depth, even if not written
-  bool as_z = false;          ///< depth along the axis instead of radial distance
+  std::vector<DecodedPlane> correction_planes = {};  ///< planes_for(), even if not written
+  bool as_z = false;  ///< depth along the axis instead of radial distance
   int first_frame = 0;
   int frames = 1;
   PinholeView view;      ///< of all frames
