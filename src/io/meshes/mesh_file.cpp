@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/shared/text_numbers.hpp"
@@ -91,13 +92,9 @@ class TextReader {
     std::array<float, 3> position{};
     for (float& number : position) {
       const std::string_view word = next_word(rest);
-      std::string_view digits = word;
-      if (digits.starts_with('+')) digits.remove_prefix(1);
-      double value = 0.0;
-      const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-      if (result.ec != std::errc() || result.ptr != digits.data() + digits.size())
-        fail(fmt::format("found the coordinate '{}'; expected a number", word));
-      number = static_cast<float>(value);
+      const std::optional<double> value = number_in(word);
+      if (!value) fail(fmt::format("found the coordinate '{}'; expected a number", word));
+      number = static_cast<float>(*value);
     }
     add_corner(position, soup_);
     ++corners_;
@@ -209,14 +206,10 @@ class ObjReader {
                     std::array<float, n>& first) const {
     std::size_t numbers = 0;
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-      std::string_view digits = word;
-      if (digits.starts_with('+')) digits.remove_prefix(1);
-      double number = 0.0;
-      const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-      if (result.ec != std::errc() || result.ptr != digits.data() + digits.size() ||
-          !std::isfinite(number) || !std::isfinite(static_cast<float>(number)))
+      const std::optional<double> number = number_in(word);
+      if (!number || !std::isfinite(static_cast<float>(*number)))
         fail(fmt::format("found the coordinate '{}'; expected a finite number", word));
-      if (numbers < n) first[numbers] = static_cast<float>(number);
+      if (numbers < n) first[numbers] = static_cast<float>(*number);
       ++numbers;
     }
     if (numbers < least)
