@@ -11,6 +11,7 @@
 #include "design_setup.hpp"
 #include "refusal.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/version.hpp"
 
 namespace tofsmith {
 namespace {
@@ -47,6 +48,11 @@ void expect_best_wins(const Camera& camera, const DesignResult& result, const st
     EXPECT_NO_THROW(require_fits(c.code, camera));
     EXPECT_EQ(c.error.code, c.code.name());
     EXPECT_EQ(c.code.provenance.depth_error_m, geometric_mean_error_m(c.error, kind));
+    if (c.is_designed() || c.method == "naive") {
+      EXPECT_EQ(c.code.provenance.method, c.method);
+      EXPECT_EQ(c.code.provenance.camera, camera.name);
+      EXPECT_EQ(c.code.provenance.version, TOFSMITH_VERSION);
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/version.hpp"
 
 namespace tofsmith {
 namespace {
@@ -158,6 +159,7 @@ TEST(RowDesign, IsReproducibleForTheSameSeed) {
   const auto again = row_candidates(camera, 5, quick(5), {});
   ASSERT_EQ(first.size(), again.size());
   expect_same_code(first.front().code, again.front().code);
+  EXPECT_EQ(first.front().code.provenance.version, TOFSMITH_VERSION);
 }
 
 TEST(RowDesign, ReportsUnsupportedRequests) {

@@ -215,10 +215,9 @@ std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera
     pairs.push_back({.candidates = naive_start(PairModel(target, camera))});
     if (pairs.back().candidates.empty()) return std::nullopt;
   }
-  CodeSet code = assemble(targets.name + "-naive", pairs, PairChoice(pairs.size(), 0), camera);
-  code.provenance.method = "naive";
-  code.provenance.camera = camera.name;
-  return code;
+  constexpr std::uint64_t no_seed = 0;  // nothing is searched
+  return signed_by(assemble(targets.name + "-naive", pairs, PairChoice(pairs.size(), 0), camera),
+                   "naive", camera, no_seed);
 }
 
 Candidate factorized_candidate(const TargetSet& targets, const Camera& on,

@@ -439,11 +439,8 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
 
   const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[2])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  CodeSet code = search.code_set(tones);
-  code.provenance.method = "optimize";
-  code.provenance.camera = on.name;
-  code.provenance.seed = options.seed;
-  Candidate candidate{.code = std::move(code), .method = "optimize"};
+  Candidate candidate{.code = signed_by(search.code_set(tones), "optimize", on, options.seed),
+                      .method = "optimize"};
   candidate.seconds = taken.count();
   candidate.iterations = drawn + 2 * bettered * steps_per_set;
   candidate.message = fmt::format("tones {}", fmt::join(tones.tones, ", "));
