@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -46,13 +49,18 @@ std::vector<std::string> texts_of_words() {
 
 }  // namespace detail
 
-/// Adds an option with the help text, range, words and default of a field.
+/// Adds an option with the help text, range, words, default and condition of a field.
 /// @param option  such as "--trials"; of a flag that clears the field, "!--no-map"
 template <typename Value>
 CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
                            const std::string& option) {
   using Single = SingleValue<Value>;
-  const std::string help = field.help_text();
+  // A condition that is another option is checked by CLI11.
+  CLI::Option* const condition =
+      field.only_with.empty() ? nullptr
+                              : command.get_option_no_throw(fmt::format("--{}", field.only_with));
+  const std::string help = full_help(
+      field.unit(), field.help, condition ? std::string_view() : field.only_with, field.if_absent);
   CLI::Option* added = nullptr;
   if constexpr (std::is_same_v<Value, bool>) {
     added = command.add_flag(option, field.value, option[0] == '!' ? "do not " + help : help);
@@ -86,6 +94,7 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
     }
   }
   if constexpr (is_list<Value>) added->delimiter(',')->allow_extra_args(false);
+  if (condition) added->needs(condition);
   return added;
 }
 

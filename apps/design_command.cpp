@@ -66,8 +66,10 @@ void OperatingMultipathArguments::add_to(CLI::App& command, OptimizeOptions& opt
       "in the given ranges, such as ratio=0.1:0.5,delta=0.5:3; overrides [operating.multipath]");
   command
       .add_option("--multipath-weight", weight_,
-                  "weight w in the objective E1^(1-w) E2^w; E1 is the error without multipath, "
-                  "E2 the error with multipath")
+                  fmt::format("weight w in the objective E1^(1-w) E2^w; E1 is the error without "
+                              "multipath, E2 the error with multipath (default: the camera's, "
+                              "otherwise {})",
+                              OperatingMultipath().weight))
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
   two_return_weight_ =
       add_field_option(command, options, "two_return_weight", "--two-return-weight");

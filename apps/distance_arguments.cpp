@@ -26,7 +26,9 @@ void DistanceArguments::add_to(CLI::App& command) {
       ->check(positive_number(1.0))
       ->capture_default_str()
       ->needs(distance);
-  command.add_option("--klux", klux_, "sunlight on the surfaces at --distance [klx]")
+  command
+      .add_option("--klux", klux_,
+                  "sunlight on the surfaces at --distance [klx] (default: the camera's)")
       ->check(number_from_0_on())
       ->transform(number_in("klx"))
       ->needs(distance);

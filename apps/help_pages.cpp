@@ -153,8 +153,8 @@ std::string remarks(const CLI::Option& option, const std::string& rule) {
   return all.empty() ? "" : fmt::format(" ({})", fmt::join(all, "; "));
 }
 
-/// Arguments of an example by the words of the command, for commands that set no footer.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 17> examples = {{
+/// Arguments of an example by the words of the command.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> examples = {{
     {" demo", "-o out"},
     {" cameras", "paper-10f0"},
     {" codes", "hamiltonian-k4"},
@@ -163,6 +163,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> examples
     {" evaluate", "sinusoid-k4 hamiltonian-k4 --camera mine.toml"},
     {" multipath", "hamiltonian-k4 --camera mine.toml"},
     {" require", "mine.toml --error 5mm --distance 3m --klux 20"},
+    {" export", "hamiltonian-k4 --camera mine.toml --format siglent-csv -o waveforms"},
     {" upload", "hamiltonian-k4 --camera mine.toml --instrument 192.168.0.10"},
     {" scene", "table-top -o look"},
     {" simulate", "table-top --code sinusoid-k4 --camera mine.toml -o raw.npy"},
@@ -191,8 +192,11 @@ std::string command_words(const CLI::App& command) {
 void add_examples(CLI::App& app) {
   const auto found =
       std::ranges::find(examples, command_words(app), &decltype(examples)::value_type::first);
-  if (found != examples.end() && app.get_footer().empty())
-    app.footer(fmt::format("Example: tofsmith{} {}", found->first, found->second));
+  if (found != examples.end()) {
+    const std::string footer = app.get_footer();
+    app.footer(fmt::format("{}{}Example: tofsmith{} {}", footer, footer.empty() ? "" : "\n",
+                           found->first, found->second));
+  }
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     add_examples(*command);
 }

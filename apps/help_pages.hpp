@@ -23,7 +23,7 @@ class HelpPages : public CLI::Formatter {
   std::string make_subcommand(const CLI::App* command) const override;
 };
 
-/// Sets the example of every command without a footer.
+/// Adds examples to the footers of commands.
 void add_examples(CLI::App& app);
 
 /// Returns the names of an option with their dashes: "-o", "--output". Positionals have none.

@@ -155,8 +155,8 @@ void add_require_command(CLI::App& app, Session& session) {
       ->check(one_of({"bandwidth", "power", "exposure"}));
   const FieldOptions options(*command, arguments->options);
   options.add("max_factor", "--max-factor");
-  CLI::Option* exact = options.add("exact", "--exact");
-  options.add("effort", "--effort")->needs(exact);
+  options.add("exact", "--exact");
+  options.add("effort", "--effort");
   options.add("trials", "--trials");
   options.add("seed", "--seed");
   options.add("map", "!--no-map");

@@ -148,6 +148,7 @@ void CameraArguments::add_temperature_to(CLI::App& command) {
       .add_option("--sensor-temperature", sensor_temperature_c,
                   "temperature of the sensor [degrees C], for cameras with [temperature.sensor] "
                   "(default: temperature.sensor.now_c, otherwise the reference)")
+      ->transform(number_in("degrees C"))
       ->group(for_experts);
 }
 
@@ -157,7 +158,7 @@ CLI::Option* CameraArguments::add_key_option(CLI::App& command, const std::strin
   const auto described = std::ranges::find(keys, key, &KeyDescription::name);
   TOFSMITH_ASSERT_EQ(described != keys.end(), true);
   const std::string_view unit = unit_of_key(key);
-  std::string help = full_help(unit, described->key.help, "", "");
+  std::string help = full_help(unit, described->key.help, "", fmt::format("the camera's {}", key));
   help.front() = static_cast<char>(help.front() - 'A' + 'a');  // keys begin with a capital letter
   if (described->type == ValueType::choice)
     return command
@@ -167,13 +168,14 @@ CLI::Option* CameraArguments::add_key_option(CLI::App& command, const std::strin
             help)
         ->check(one_of(described->words));
   const Range range = described->key.range;
+  const bool is_integer = described->type == ValueType::integer;
   return command
       .add_option_function<double>(
           name,
           [this, key](double value) { key_settings_.push_back(fmt::format("{}={}", key, value)); },
           help)
-      ->transform(number_in(unit))
-      ->check(number_that(range.text(false), [range](double v) { return range.contains(v); }));
+      ->transform(number_in(unit, is_integer))
+      ->check(number_that(range.text(is_integer), [range](double v) { return range.contains(v); }));
 }
 
 std::filesystem::path camera_beside(const std::filesystem::path& raw) {

@@ -87,6 +87,7 @@ struct CameraArguments {
   /// Adds `--temperature` and `--sensor-temperature`.
   void add_temperature_to(CLI::App& command);
   /// Adds an option for one key, a number or a choice, with the help, unit and range of the key.
+  /// Its default is the camera's value.
   /// @param key  "operating.velocity_m_per_s"
   CLI::Option* add_key_option(CLI::App& command, const std::string& key, const std::string& name);
   /// Adds a positional CAMERA.

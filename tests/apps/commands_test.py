@@ -222,6 +222,16 @@ class Commands(CommandLineTest):
             self.assertIn("Example: tofsmith decode raw.npy", text)
             self.assertNotRegex(text, "FLOAT|TEXT|\\{false\\}")
 
+    def test_help_states_defaults_conditions_and_examples(self):
+        for command, words in (
+                ("evaluate", "(default: the camera's sensor.decoder)"),
+                ("design", "(default: the camera's, otherwise 0.2)"),
+                ("require", "default effort of a design (in [0.01, 100]; default: 0.1; requires "
+                 "--exact)"),
+                ("export", "Example: tofsmith export hamiltonian-k4 --camera mine.toml --format")):
+            self.assertIn(words, " ".join(self.do(command, "--help-all").split()), command)
+        self.assertIn("\nFormats:\n", self.do("export", "--help"))
+
     def test_a_mesh_is_a_scene(self):
         self.write("m.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n")
         document = self.do_json("simulate", "m.obj", "--scale-m", "0.5", "--width", "40",

@@ -41,7 +41,7 @@ auto fields_of(ConstOrNot<Oven> auto& o) {
                     Field("heat", o.heat, Help{"where heat comes from"}),
                     Field("night", o.night, Help{"heat at night"}, IfAbsent{"none"}),
                     Field("time_s", o.time_s, at_least(0), Help{"times"}),
-                    Field("recipe", o.recipe, Help{"name of the recipe"}));
+                    Field("recipe", o.recipe, Help{"name of the recipe"}, OnlyWith{"grill"}));
 }
 
 namespace apps {
@@ -50,6 +50,7 @@ namespace {
 using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 /// A command with an option for each field, "--door-m", but "--no-fan".
 class OvenCommand {
@@ -113,6 +114,7 @@ TEST(DescribedOptions, RejectValuesOutsideTheirDescription) {
   EXPECT_EQ(refused({"--time-s", "1,-2"}), "--time-s: found -2; must be finite and >= 0");
   EXPECT_THAT(refused({"--heat", "botom"}), HasSubstr("did you mean bottom?"));
   EXPECT_THAT(refused({"--night", "warm"}), HasSubstr("top,bottom,both"));
+  EXPECT_EQ(refused({"--recipe", "bread"}), "--recipe requires --grill");
 }
 
 TEST(DescribedOptions, ShowDescriptionAndDefaultInHelp) {
@@ -126,6 +128,7 @@ TEST(DescribedOptions, ShowDescriptionAndDefaultInHelp) {
   EXPECT_THAT(help, ContainsRegex("--heat TEXT:.top,bottom,both.( .both.|=both)"));
   EXPECT_THAT(help, HasSubstr("heat at night (default: none)"));
   EXPECT_THAT(help, HasSubstr("times [s]"));
+  EXPECT_THAT(help, Not(HasSubstr("only with grill")));
 }
 
 TEST(DescribedOptions, AreInDocumentsKeysAndDescriptionsForOtherLanguages) {

@@ -97,8 +97,8 @@ COMMANDS = (
     _command("report designed -o page.html", "page.html"),
     _command(f"design {_CAMERA} --method factorize --exposures 3 --effort 0.01 --trials 1000 -o d",
              "d", is_slow=True, also="d/finished/"),
-    _command(f"require {_CAMERA} --error 20mm --vary power --no-map --effort 0.01 --trials 1000 "
-             "-o need", "need", is_slow=True),
+    _command(f"require {_CAMERA} --error 20mm --vary power --no-map --exact --effort 0.01 "
+             "--trials 1000 -o need", "need", is_slow=True),
     _command(f"demo {_CAMERA} --effort 0.01 --trials 1000 --width 8 --height 6 -o out", "out",
              is_slow=True, also="out/"),
 )

@@ -100,6 +100,8 @@ Enum parse_word(std::string_view field, std::string_view word) {
   return static_cast<Enum>(index_of_word(field, words, usual_word(Enum{}, word)));
 }
 
+/// Returns a help text with unit, default and condition, of which each may be empty: "longest delay
+/// of a second return [m] (default: a third of the range)".
 std::string full_help(std::string_view unit, std::string_view help, std::string_view only_with,
                       std::string_view if_absent);
 
@@ -122,9 +124,6 @@ struct Field {
     (set(its_marks), ...);
   }
   bool is(FieldMark mark) const { return (marks & as_bits(mark)) != 0; }
-  /// With unit, condition and default: "longest delay of a second return [m] (default: a
-  /// third of the range)".
-  std::string help_text() const { return full_help(unit(), help, only_with, if_absent); }
   /// "" for plain numbers.
   std::string_view unit() const;
 

@@ -284,7 +284,8 @@ auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
             Help{"design a code for each tried bandwidth, power or exposure (minutes) instead of "
                  "using atlas codes (seconds); the required value can be smaller with designed "
                  "codes"}),
-      Field("effort", o.effort, closed(0.01, 100), Help{"effort of the search for each code"},
+      Field("effort", o.effort, closed(0.01, 100),
+            Help{"search effort for each code, relative to the default effort of a design"},
             OnlyWith{"exact"}),
       Field("trials", o.trials, closed(1000, 1e8), Help{"trials per operating point"}),
       Field("map", o.map,
