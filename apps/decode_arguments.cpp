@@ -53,11 +53,14 @@ void TableArguments::add_to(CLI::App& command) {
   command
       .add_option(
           "--table-axes", axes_,
-          "axes of a measured table: samples x measurements (nk) or measurements x samples (kn)")
+          "axes of a measured table: samples x measurements (nk) or measurements x samples (kn) "
+          "(default: as the shape permits)")
       ->check(one_of({"nk", "kn"}))
       ->group(for_experts);
   command
-      .add_option("--order", order_, "order of the code's exposures in the frames, such as 0,3,2,1")
+      .add_option("--order", order_,
+                  "order of the code's exposures in the frames, such as 0,3,2,1 (default: the "
+                  "camera's playback.order, otherwise ascending)")
       ->delimiter(',');
   command.add_flag("--reverse", reversed_,
                    "reverse the direction of delay, for frames in which near and far are swapped");
@@ -178,12 +181,17 @@ void set_field(const char* argument, const std::string& setting, Options& option
   bool is_known = false;
   for_each_field(options, [&](const auto& field) {
     if (field.name != key) return;
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    constexpr bool is_integer = std::is_integral_v<Value>;
+    constexpr const char* kind = std::is_same_v<Value, bool> ? "true or false"
+                                 : is_integer                ? "an integer"
+                                                             : "a number";
     is_known = true;
-    if (!CLI::detail::lexical_cast(value, field.value) ||
-        !field.range.contains(static_cast<double>(field.value)))
-      throw UsageError(fmt::format(
-          "{} {}: found {}; must be {}", argument, key, value,
-          field.range.text(std::is_integral_v<std::remove_cvref_t<decltype(field.value)>>)));
+    if (!CLI::detail::lexical_cast(value, field.value))
+      throw UsageError(fmt::format("{} {}: found {}; expected {}", argument, key, value, kind));
+    if (!field.range.contains(static_cast<double>(field.value)))
+      throw UsageError(fmt::format("{} {}: found {}; must be {}", argument, key, value,
+                                   field.range.text(is_integer)));
   });
   if (is_known) return;
   const std::vector<std::string> keys = keys_of<Options>();
@@ -221,7 +229,8 @@ void FilterArguments::add_to(CLI::App& command) {
           .add_option("--time-filter", max_frames_,
                       "temporal filter, which averages each pixel over about this many frames "
                       "while the pixel does not change (default: off)")
-          ->check(number_that(">= 1", [](double value) { return value >= 1.0; }));
+          ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
+          ->transform(number_in("", true));
   add_field_option(command, time_options_, "look_ahead", "--look-ahead")
       ->needs(time_filter)
       ->group(for_experts);

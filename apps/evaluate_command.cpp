@@ -433,8 +433,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   arguments->camera.add_key_option(*command, "operating.interference.cameras", "--interference");
   const FieldOptions options(*command, arguments->options);
   options.add("trials", "--trials");
-  options.add("target_standard_error", "--target-standard-error")
-      ->transform(share_or_percentage(1e-5, 1.0));
+  options.add("target_standard_error", "--target-standard-error")->transform(share_or_percentage());
   options.add("max_trials", "--max-trials")->group(for_experts);
   options.add("seed", "--seed");
   arguments->method.add_to(*command);

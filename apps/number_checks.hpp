@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "session.hpp"
@@ -89,10 +90,10 @@ inline CLI::Validator number_from_0_on() {
                      [](double value) { return value >= 0.0 && std::isfinite(value); });
 }
 
-/// Returns a validator for a share in [min, max), which converts a percentage: "1%" to "0.01".
-inline CLI::Validator share_or_percentage(double min, double max) {
-  const std::string rule = fmt::format("a share in [{}, {}), such as 0.01 or 1%", min, max);
-  return {[=](std::string& text) {
+/// Returns a validator for a share in [0, 1), which converts a percentage: "1%" to "0.01".
+inline CLI::Validator share_or_percentage() {
+  return {[](std::string& text) {
+            constexpr std::string_view rule = "a share in [0, 1), such as 0.01 or 1%";
             const bool is_percentage = text.ends_with('%');
             double value = 0.0;
             if (!CLI::detail::lexical_cast(is_percentage ? text.substr(0, text.size() - 1) : text,
@@ -100,7 +101,7 @@ inline CLI::Validator share_or_percentage(double min, double max) {
                 !std::isfinite(value))
               return fmt::format("found {}; must be {}", text, rule);
             if (is_percentage) value /= 100.0;
-            if (!(value >= min && value < max))
+            if (!(value >= 0.0 && value < 1.0))
               return fmt::format("found {}; must be {}", text, rule);
             text = fmt::format("{}", value);
             return std::string();

@@ -378,11 +378,13 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->add_option("--signal", arguments->signal_e_per_s,
                    "signal of a white surface at the reference distance [e/s] (default: from "
                    "the camera's [optics]; without [optics], the middle of its operating points)")
+      ->check(number_from_0_on())
       ->transform(number_in("e/s"));
   command
       ->add_option("--ambient", arguments->ambient_e_per_s,
                    "ambient light [e/s] (default: from the camera's [optics]; without [optics], "
                    "the middle of its operating points)")
+      ->check(number_from_0_on())
       ->transform(number_in("e/s"));
   command
       ->add_option("--signal-range", arguments->signal_range,

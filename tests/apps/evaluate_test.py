@@ -62,6 +62,11 @@ class Evaluate(CommandLineTest):
         self.assertIn("25 of 25 operating points did not reach a standard error of 0.1 %", text)
         self.assertIn("3000 trials", text)
 
+    def test_a_target_standard_error_of_0_is_the_default(self):
+        evaluate = ("evaluate", "sinusoid-k4", *FAST)
+        self.assertEqual(self.do_json(*evaluate, "--target-standard-error", "0"),
+                         self.do_json(*evaluate))
+
     def test_the_method_is_reported(self):
         document = self.do_json("evaluate", "multifrequency-k5", *FAST, "--method", "unwrap",
                                 "--unwrap-weights", "frequency")

@@ -133,7 +133,10 @@ class Streaming(CommandLineTest):
         ahead = ("--time-filter", "8")
         for more, words in ((("--filter", "light", "--filter-set", "window=1"), ["did you mean windows?"]),
                             (("--filter", "light", "--filter-set", "windows"), ["KEY=VALUE"]),
-                            (("--filter", "light", "--filter-set", "windows=x"), ["found x"]),
+                            (("--filter", "light", "--filter-set", "windows=1.5"),
+                             ["windows: found 1.5; expected an integer"]),
+                            ((*ahead, "--time-filter-set", "before_filter=maybe"),
+                             ["before_filter: found maybe; expected true or false"]),
                             ((*ahead, "--time-filter-set", "max_differnce_sigma=3"),
                              ["did you mean max_difference_sigma?"]),
                             (("--look-ahead", "4"), ["--time-filter"]),
