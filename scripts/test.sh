@@ -9,7 +9,10 @@
 #
 #   --preset NAME   a preset of CMakePresets.json: dev (default), asan, tsan
 #   --floors LIST   build and run only the unit tests of these folders
-#   --locale NAME   run all tests in the locale de_DE.UTF-8, set in tests and in Python as by a host program
+#   --locale NAME   run all tests in the locale de_DE.UTF-8, set in tests and in Python as by a host
+#                   program
+#
+# With the presets asan and tsan, the environment variable GTEST_FILTER selects tests.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -53,7 +56,8 @@ if ((${#floors[@]})); then
 fi
 echo "Building tofsmith and its tests in $build"
 settings=(-DTOFSMITH_COMPONENTS="$components")
-[[ "$preset" == dev ]] || settings+=(-DTOFSMITH_TARGETS="$(own_target)") # all targets would take too long
+# All targets would take too long.
+[[ "$preset" == dev ]] || settings+=(-DTOFSMITH_TARGETS="$(own_target)")
 [[ -z "$components" ]] || settings+=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
 cmake --log-level=WARNING --preset "$preset" "${settings[@]}"
 cmake --build "$build" --target "${targets[@]}"
@@ -61,13 +65,30 @@ cmake --build "$build" --target "${targets[@]}"
 in_locale=()
 if [[ -n "$locale" ]]; then
   [[ -e "$build/locale/$locale/LC_NUMERIC" ]] ||
-    tofsmith_die "found no locale $locale in $build/locale; expected de_DE.UTF-8, from the package locales"
+    tofsmith_die "found no locale $locale in $build/locale; expected de_DE.UTF-8, from the package" \
+      "locales"
   cmake --build "$build" --target locale_shim
   in_locale=(env LOCPATH="$build/locale" TOFSMITH_TEST_LOCALE_OF_HOSTS="$locale"
     LD_PRELOAD="$build/tests/liblocale_shim.so")
 fi
 
-failures="$build/Testing/Temporary/LastTestsFailed.log" # one test per line, including tests that could not run
+# A program whose tests are all excluded passes, so that a misspelled filter would pass. The target
+# `all` builds every test_*.
+if [[ -n "${GTEST_FILTER:-}" ]]; then
+  matches=
+  for target in "${targets[@]/#all/test_*}"; do
+    for program in "$build/tests/"$target; do
+      [[ -f "$program" && -x "$program" ]] || continue
+      ! grep -q '^  ' <<<"$("$program" --gtest_list_tests)" || matches=yes
+    done
+  done
+  [[ -n "$matches" ]] ||
+    tofsmith_die "GTEST_FILTER: found '$GTEST_FILTER', which matches no test; expected a filter" \
+      "such as 'Decoder.*'"
+fi
+
+# One test per line, including tests that could not run.
+failures="$build/Testing/Temporary/LastTestsFailed.log"
 rm -f "$results" "$failures"
 status=0
 # One more than there are cores: some tests wait for a browser or an instrument.
