@@ -104,7 +104,8 @@ class Commands(CommandLineTest):
         self.write("raw.camera.toml", "fundamental_frequency_hz = 15e6\n")
         again = ["simulate", SMALL, "--code", "hamiltonian-k3", "-o", "raw.npy"]
         self.refuse(again, "raw.camera.toml: the file already exists")
-        self.refuse([*again, "--camera", "raw.camera.toml"], "raw.code.json: the file already exists")
+        self.refuse([*again, "--camera", "raw.camera.toml"],
+                    "raw.code.json: the file already exists")
         os.remove(self.path("raw.code.json"))
         self.do(*again, "--camera", "raw.camera.toml")
         self.assertEqual(self.bytes_of("raw.camera.toml"), b"fundamental_frequency_hz = 15e6\n")
@@ -140,7 +141,8 @@ class Commands(CommandLineTest):
                                    figures[1]["coding_curve_length"],
                                    3 if code == "sinusoid-k4" else 6)  # sampled in the file
         self.write("odd.csv", "modulation_1,modulation_2,demodulation_1\n1,1,1\n1,1,0\n")
-        self.refuse(["evaluate", "odd.csv"], "odd.csv", "found 2 columns modulation_1, ... and 1 columns demod")
+        self.refuse(["evaluate", "odd.csv"], "odd.csv",
+                    "found 2 columns modulation_1, ... and 1 columns demod")
         self.write("odd.csv", "modulation_1,light\n1,1\n1,1\n")
         self.refuse(["evaluate", "odd.csv"], "odd.csv: found the column 'light'; expected time_s")
         self.write("odd.csv", "modulation_1,demodulation_1\n1,2\n1,0\n")
@@ -177,7 +179,8 @@ class Commands(CommandLineTest):
         document = self.do_json("scene", "wall", "--camera", "lens.toml", "-o", "wall.npy")
         self.assertEqual((document["height"], document["width"]), (24, 32))
         np.testing.assert_allclose(np.load(self.path("wall.npy"))[0, 0],
-                                   0.5 * np.sqrt(1 + (15.5 / 40) ** 2 + (11.5 / 40) ** 2), rtol=1e-5)
+                                   0.5 * np.sqrt(1 + (15.5 / 40) ** 2 + (11.5 / 40) ** 2),
+                                   rtol=1e-5)
 
     def test_depth_files_state_their_kind(self):
         self.do("simulate", "wall", "--code", "sinusoid-k4", "--signal", "1e7", "-o", "raw.npy")
@@ -270,7 +273,8 @@ class Commands(CommandLineTest):
                                    (0, (), ("20 no_return", "--layout")),
                                    (4095, adc, ("20 saturated", "reduce the exposure"))):
             np.save(self.path("none.npy"), np.full((4, 5, 4), value, np.float32))
-            decode = ("decode", "none.npy", "--code", "sinusoid-k4", *more, "-o", "d.npy", "--force")
+            decode = ("decode", "none.npy", "--code", "sinusoid-k4", *more, "-o", "d.npy",
+                      "--force")
             (note,) = [n for n in self.do_json(*decode)["notes"] if "no pixel has a depth" in n]
             for word in words:
                 self.assertIn(word, note)

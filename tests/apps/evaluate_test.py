@@ -23,8 +23,8 @@ class Evaluate(CommandLineTest):
             for line, error_m in ((first + 1, min(points[code])), (first + 2, max(points[code]))):
                 self.assertIn(code, lines[line])
                 self.assertAlmostEqual(float(lines[line].split()[7]) / error_m, 1e3, delta=1)
-        self.assertIn("all 25 light levels of the camera (S = 1e+03 to 1e+05, A = 100 to 1e+05 e/s), "
-                      "use --every-level", "\n".join(lines))
+        self.assertIn("all 25 light levels of the camera (S = 1e+03 to 1e+05, A = 100 to "
+                      "1e+05 e/s), use --every-level", "\n".join(lines))
         full = [lines[i] for i in (0, 2, 3, 5, 6)]  # without means, which have no bounds
         self.assertEqual(len({len(line) for line in full}), 1)  # columns are aligned
         lines = self.do("evaluate", *codes, *FAST, "--every-level").splitlines()
@@ -89,8 +89,8 @@ class Evaluate(CommandLineTest):
         self.assertIn("true depths from 1 to 3 m, distributed by 2 weights, decoded", text)
 
     def test_maximum_likelihood_is_compared_with_zncc(self):
-        ml = ("evaluate", "hamiltonian-k5", *FAST, "--set", "operating.signal_e_per_s=[1e5]", "--set",
-              "operating.ambient_e_per_s=[1e2]", "--method", "ml")
+        ml = ("evaluate", "hamiltonian-k5", *FAST, "--set", "operating.signal_e_per_s=[1e5]",
+              "--set", "operating.ambient_e_per_s=[1e2]", "--method", "ml")
         ratio = self.do_json(*ml)["codes"][0]["zncc"]["circular_ratio"]
         text = self.do(*ml, "-o", "e.csv")
         for words in ("decoded by ml", "ml / zncc", f"{ratio:.4f}"):
@@ -108,7 +108,8 @@ class Evaluate(CommandLineTest):
         self.assertEqual(plain["camera"]["sensor"]["decoder"], "plain")
         self.assertGreater(plain["codes"][0]["circular"]["geometric_mean_m"],
                            whitened["codes"][0]["circular"]["geometric_mean_m"])
-        self.refuse((*rows, "--decoder", "white"), "--decoder", "white", "whitened", "plain", code=2)
+        self.refuse((*rows, "--decoder", "white"), "--decoder", "white", "whitened", "plain",
+                    code=2)
         self.refuse((*rows, "--decoder", "plain", "--method", "ml"), "sensor.decoder", "ml")
 
         self.do("simulate", "wall", "--width", "40", "--height", "30", "--code", "fourier-k5",

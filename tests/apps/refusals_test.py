@@ -13,7 +13,8 @@ from command_line import CommandLineTest
 
 class Refusals(CommandLineTest):
     def test_messages_contain_no_terminal_escapes(self):
-        for name, shown in ((b"\x1b[31mred", "\\x1b[31mred"), (b"a\xff\xc2\x9bb", "a\\xff\\xc2\\x9bb"),
+        for name, shown in ((b"\x1b[31mred", "\\x1b[31mred"),
+                            (b"a\xff\xc2\x9bb", "a\\xff\\xc2\\x9bb"),
                             ("Größe".encode(), "Größe")):
             process = self.start("evaluate", os.fsdecode(name))
             error = process.communicate()[1]
@@ -67,15 +68,16 @@ class Refusals(CommandLineTest):
                  ["near", "label", "snap", "drop"]),
                 (["decode", "r.npy", "--code", "c", "--average", "0", "-o", "d.npy"],
                  ["--average: found 0; must be >= 1"]),
-                (["simulate", "table-top", "--code", "sinusoid-k4", "--ambient", "-1", "-o", "r.npy"],
-                 ["--ambient: found -1; must be >= 0"]),
+                (["simulate", "table-top", "--code", "sinusoid-k4", "--ambient", "-1", "-o",
+                  "r.npy"], ["--ambient: found -1; must be >= 0"]),
                 (["codes", "-o", "x.npz"], ["NAME"]),
                 (["simulate", "table-top", "--code", "sinusoid-k4"], ["--output"]),
                 (["simulate", "table-top", "--image", "a.png", "--code", "sinusoid-k4", "-o",
                   "r.npy"], ["--image a.png"]),
                 (["simulate", "table-top", "--code", "sinusoid-k4", "--reference-distance", "-2",
                   "-o", "r.npy"], ["--reference-distance: found -2; must be finite and > 0"]),
-                (["scene", "m.obj", "--scale-m", "0", "-o", "d"], ["found 0; must be finite and > 0"]),
+                (["scene", "m.obj", "--scale-m", "0", "-o", "d"],
+                 ["found 0; must be finite and > 0"]),
                 (["evaluate", "sinusoid-k4", "--outlier-threshold", "nan"],
                  ["found nan; must be >= 0"]),
                 (["reproduce"], ["FIGURE"])):
@@ -167,9 +169,8 @@ class Refusals(CommandLineTest):
 
     def test_files_in_the_way_of_a_directory(self):
         self.write("report.html", "mine")
-        self.refuse(["design", "--method", "factorize", "--exposures", "3", "--trials", "1000", "-o",
-                     "."], "report.html",
-                    "--force")
+        self.refuse(["design", "--method", "factorize", "--exposures", "3", "--trials", "1000",
+                     "-o", "."], "report.html", "--force")
         self.refuse(["demo", "--trials", "1000", "-o", "."], "report.html", "--force")
 
 

@@ -87,7 +87,8 @@ class Streaming(CommandLineTest):
         self.refuse(["decode", "-", *code, "-o", "d.npy"], "-o -", code=2)
         self.refuse(["decode", "raw.npy", *code, "-o", "-"], "RAW -", code=2)
         self.refuse(["decode", "-", *code, "-o", "-"], "--raw-format", code=2)
-        self.refuse(["decode", "-", "-", *code, "-o", "-"], "cannot be combined with other input files", code=2)
+        self.refuse(["decode", "-", "-", *code, "-o", "-"],
+                    "cannot be combined with other input files", code=2)
 
     def arguments(self, *more, raw="raw.npy", output="d.npy"):
         return ["decode", raw, "--code", "hamiltonian-k3", "-o", output, *more]
@@ -131,7 +132,8 @@ class Streaming(CommandLineTest):
     def test_rejects_invalid_filters_and_means(self):
         self.record(frames=5)
         ahead = ("--time-filter", "8")
-        for more, words in ((("--filter", "light", "--filter-set", "window=1"), ["did you mean windows?"]),
+        for more, words in ((("--filter", "light", "--filter-set", "window=1"),
+                             ["did you mean windows?"]),
                             (("--filter", "light", "--filter-set", "windows"), ["KEY=VALUE"]),
                             (("--filter", "light", "--filter-set", "windows=1.5"),
                              ["windows: found 1.5; expected an integer"]),
@@ -198,7 +200,8 @@ class Streaming(CommandLineTest):
     def test_memory_is_independent_of_the_file_size(self):
         raw = self.record(frames=1)
         # 6 GB, of which one frame contains data
-        self.sparse("large.npy", (2000, 500, 1000, 3), "u2", [((1500, slice(30), slice(40)), raw[0])])
+        self.sparse("large.npy", (2000, 500, 1000, 3), "u2",
+                    [((1500, slice(30), slice(40)), raw[0])])
         peak = self.peak_mb(*self.arguments("--frame", "1500", raw="large.npy"))
         self.assertLess(peak, MEMORY_LIMIT_MB)
         self.do(*self.arguments(output="plain.npy"))
