@@ -9,7 +9,7 @@ import functools
 import inspect
 import re
 import textwrap
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from ._option import Option
@@ -18,18 +18,11 @@ from ._option_fields import OPTIONS
 Kind = TypeVar("Kind", bound=Callable[..., Any])
 
 
-def takes(*classes: type[Any], but: Collection[str] = ()) -> Callable[[Kind], Kind]:
-    """Decorator for a function or class whose `**options` are keys of these dicts. Adds the options
-    to the signature and, replacing the entry `**options`, to the docstring. Rejects other names.
-
-    Parameters
-    ----------
-    *classes
-        Classes of _option_fields.
-    but
-        Options that the function has as separate parameters.
-    """
-    options = [each for of in classes for each in OPTIONS[of] if each.name not in but]
+def takes(kind: type[Any]) -> Callable[[Kind], Kind]:
+    """Decorator for a function or class whose `**options` are keys of a dict of _option_fields. Adds
+    the options to the signature and, replacing the entry `**options`, to the docstring. Rejects
+    other names."""
+    options = OPTIONS[kind]
 
     def decorate(target: Any) -> Any:
         if not isinstance(target, type):
@@ -41,7 +34,7 @@ def takes(*classes: type[Any], but: Collection[str] = ()) -> Callable[[Kind], Ki
     return decorate
 
 
-def _with_options(function: Any, options: list[Option]) -> Any:
+def _with_options(function: Any, options: Sequence[Option]) -> Any:
     signature = inspect.signature(function)
     own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
     added = [
@@ -66,7 +59,7 @@ def _with_options(function: Any, options: list[Option]) -> Any:
     return checked
 
 
-def _documented(text: str | None, options: list[Option]) -> str | None:
+def _documented(text: str | None, options: Sequence[Option]) -> str | None:
     """Replaces the entry `**options` of the docstring by the options."""
     if text is None:
         return None

@@ -46,6 +46,25 @@ def test_described_options_are_those_that_are_accepted(kind):
     assert known == [option.name for option in OPTIONS[kind]]
 
 
+def functions_with_described_options():
+    """Public functions, constructors and methods decorated with takes()."""
+    for owner in (*(getattr(ts, name) for name in ts.__all__), *vars(ts.instruments).values()):
+        for value in (owner, *(vars(owner).values() if inspect.isclass(owner) else ())):
+            wrapped = getattr(value, "__wrapped__", None)
+            if inspect.isfunction(wrapped) and "options" in inspect.signature(wrapped).parameters:
+                yield value
+
+
+@pytest.mark.parametrize("function", functions_with_described_options(),
+                         ids=lambda function: function.__qualname__)
+def test_keywords_are_those_of_the_annotated_class(function):
+    own = dict(inspect.signature(function.__wrapped__).parameters)
+    annotation = own.pop("options").annotation
+    (described,) = [options for kind, options in OPTIONS.items()
+                    if annotation == f"Unpack[{kind.__name__}]"]
+    assert list(inspect.signature(function).parameters) == [*own, *(o.name for o in described)]
+
+
 @pytest.mark.parametrize("struct, header, function, elsewhere", keywords,
                          ids=[k[0] for k in keywords])
 def test_every_field_is_a_keyword(struct, header, function, elsewhere):
