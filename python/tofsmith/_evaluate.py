@@ -138,7 +138,7 @@ def best_rotation(
     seed: Optional[int] = None,
     progress: Progress = None,
 ) -> tuple[int, FloatArray]:
-    """Finds the origin of depth with the smallest linear error.
+    """Finds the origin of depth with the smallest linear error, averaged over close origins.
 
     Returns
     -------

@@ -91,6 +91,7 @@ std::string exposures_by_taps(const DepthErrorReport& error) {
 
 namespace {
 
+/// Sums of errors at every rotation, and their averages over origins within half a bin.
 struct SumsByRotation {
   std::vector<double> at_origin, over_origins;
 };
@@ -132,12 +133,13 @@ BestRotation best_rotation(const CodeSet& code, const Camera& on, const Evaluate
                              WeighedErrorByRotation(prior, camera.operating.error, samples),
                              progress);
 
+  constexpr double tiny_m = 1e-12;  // avoids log(0), which smoothing would spread
   std::vector<double> log_sum(static_cast<std::size_t>(samples), 0.0), choice = log_sum;
   for (std::size_t p = 0; p < of_point.size(); ++p)
     for (std::size_t r = 0; r < log_sum.size(); ++r) {
       const double scale = camera.bin_m() / static_cast<double>(rounds[p].trials);
       log_sum[r] += std::log(of_point[p].at_origin[r] * scale);
-      choice[r] += std::log(of_point[p].over_origins[r] * scale);
+      choice[r] += std::log(std::max(of_point[p].over_origins[r] * scale, tiny_m));
     }
   BestRotation best;
   for (const double sum : log_sum)

@@ -144,6 +144,7 @@ TEST(Judge, CountsAllShiftsOfTheOrigin) {
   const DesignResult once = judge(camera, {{.code = code, .method = "family"}}, small_options());
   const DesignResult twice = judge(camera, once.candidates, small_options());
   const int first_bin = once.winner().rotation_bin;
+  ASSERT_NE(first_bin, 0);
   expect_same_waveforms(once.winner().code, code.rotated(first_bin));
   const int moved_bin = (twice.winner().rotation_bin + camera.samples - first_bin) % camera.samples;
   expect_same_waveforms(twice.winner().code, once.winner().code.rotated(moved_bin));

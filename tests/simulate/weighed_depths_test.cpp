@@ -150,6 +150,30 @@ TEST(WeighedDepths, ErrorsByRotationMatchTrialsRotatedOneByOne) {
   }
 }
 
+TEST(ErrorByRotation, MeansAreOverOriginsWithinHalfABin) {
+  constexpr int samples = 12, per_bin = 8;
+  ErrorByRotation errors(samples), odd_trials(samples);
+  std::vector<double> expected(samples, 0.0);
+  RandomStream random(5, 2);
+  for (int t = 0; t < 500; ++t) {
+    const auto depth = [&] { return std::floor(samples * per_bin * random.uniform()) / per_bin; };
+    const double truth = depth(), decoded = depth();
+    (t % 2 == 0 ? errors : odd_trials).add(truth, decoded);
+    for (int r = 0; r < samples; ++r)
+      for (int part = 0; part < per_bin; ++part) {  // depths are never at these origins
+        const double origin = r - 0.5 + (part + 0.5) / per_bin;
+        const auto seen = [&](double bin) {
+          return bin - origin - samples * std::floor((bin - origin) / samples);
+        };
+        expected[static_cast<std::size_t>(r)] += std::abs(seen(decoded) - seen(truth)) / per_bin;
+      }
+  }
+  errors.merge(odd_trials);
+  const std::vector<double> means = errors.means_over_origins();
+  ASSERT_EQ(means.size(), expected.size());
+  for (std::size_t r = 0; r < samples; ++r) EXPECT_NEAR(means[r], expected[r], 1e-9) << r;
+}
+
 TEST(WeighedDepths, TheBestRotationPredictsTheErrorOfTheRotatedCode) {
   for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
     Camera camera = small_camera(Weights({0, 0, 3, 1, 0, 0, 0, 0, 0, 2}));

@@ -183,13 +183,15 @@ struct BestRotation {
   std::vector<double> linear_geometric_mean_m;
 };
 
-/// Finds the rotation with the smallest linear depth error. If the camera weights depths
+/// Finds the rotation with the smallest linear depth error, averaged over close origins of depth
+/// because one origin separates few pairs of true and decoded depths. If the camera weights depths
 /// (OperatingRange::depths), its error kind decides, and uniformly drawn trials are weighted at
 /// every rotation.
 ///
 /// A rotation moves true and decoded depths alike. The error of a trial is |decoded - true|, or the
 /// range minus that if the origin is between the two, so one run of trials gives the error at all N
-/// rotations. The minimum is biased low; evaluate the rotated code for an unbiased value. If a
+/// rotations. These errors are biased low at the best rotation; evaluate the rotated code for an
+/// unbiased value. If a
 /// generator of the light rounds switching times, only rotations by whole points are considered.
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <vector>
 
 #include "camera/shared/depth_prior.hpp"
@@ -52,8 +53,8 @@ class ErrorByRotation {
     }
   }
   std::vector<double> sums() const { return accumulated(jumps_); }
-  /// Means over origins within half a bin of each rotation. Their variance is much smaller where
-  /// errors are small, because few depths are separated by one origin.
+  /// Sums of errors, averaged over the origins within half a bin of each rotation. Their variance
+  /// is much smaller where errors are small, because few depths are separated by one origin.
   std::vector<double> means_over_origins() const {
     std::vector<double> result = accumulated(jumps_of_means_);
     for (std::size_t r = 0; r < result.size(); ++r) result[r] += parts_of_means_[r];
@@ -112,6 +113,7 @@ class WeighedErrorByRotation {
                    [](double sum) { return std::max(sum, 0.0); });  // removes rounding errors
     return result;
   }
+  /// Without averages: true depths are in the middle of their bins.
   std::vector<double> means_over_origins() const { return sums(); }
 
  private:
@@ -127,14 +129,16 @@ inline int best_of_rotations(const std::vector<double>& errors) {
   return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
 }
 
-/// Smooths cyclically, because with few trials the minimum is due to noise.
+/// Smooths cyclically within 1/120 of the range, because with few trials the minimum is due to
+/// noise.
 inline std::vector<double> smoothed_over_rotations(const std::vector<double>& errors) {
-  constexpr std::array<double, 5> weights = {1.0, 2.0, 3.0, 2.0, 1.0};
-  const std::size_t count = errors.size();
-  std::vector<double> sums(count, 0.0);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      sums[i] += weights[k] * errors[(i + count + k - 2) % count];
+  const auto count = static_cast<std::ptrdiff_t>(errors.size()), reach = (count + 60) / 120;
+  std::vector<double> sums(errors.size(), 0.0);
+  for (std::ptrdiff_t i = 0; i < count; ++i)
+    for (std::ptrdiff_t k = -reach; k <= reach; ++k)
+      sums[static_cast<std::size_t>(i)] +=
+          static_cast<double>(reach + 1 - std::abs(k)) *
+          errors[static_cast<std::size_t>((i + count + k) % count)];
   return sums;
 }
 
