@@ -14,6 +14,7 @@
 #include "design/optimize/optimized_code.hpp"
 #include "design_setup.hpp"
 #include "refusal.hpp"
+#include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
@@ -237,6 +238,72 @@ TEST(Optimize, HistoryNeverRisesAndStopsEarlyWithoutGain) {
   EXPECT_THAT(found.message, HasSubstr("stopped early without further gain"));
 }
 
+TEST(Optimize, EndsEarlyOnlyIfAnotherNumberOfExposuresIsClearlyBetter) {
+  const Camera camera = small_camera();
+  DesignOptions options;
+  options.optimize = small_options();
+  options.optimize.hops = 15;
+  options.optimize.patience = 0;
+  const auto best = [&](double rival_m) {
+    return optimized_candidates(camera, 3, options, {}, rival_m, {}).front();
+  };
+  const Candidate alone = best(infinity);
+  const double error_m = error_to_beat_m(camera, options, std::span(&alone, 1));
+  EXPECT_EQ(error_m, alone.search->steps.back().error_m);
+  expect_same_code(best(error_m).code, alone.code);
+  const Candidate lost = best(0.5 * error_m);
+  EXPECT_LT(lost.search->steps.size(), alone.search->steps.size());
+  EXPECT_THAT(lost.message, HasSubstr("another number of exposures is better"));
+}
+
+TEST(Optimize, DesignsTellSearchesTheErrorToBeat) {
+  const Camera camera = small_camera();
+  DesignOptions options;
+  options.method = DesignMethod::optimize;
+  options.optimize = small_options();
+  options.optimize.hops = 15;
+  options.baselines.emplace();
+  options.trials = 200;
+  const int best_number =
+      optimizable_exposures(camera, options, contending_atlas_codes(camera, options)).front();
+  Candidate best = optimize(camera, best_number, small_options()).front();
+  best.search->steps = {{1.0, 1e-6}};
+  std::vector<std::string> messages;
+  const DesignStore store{.load =
+                              [&](const std::string& name) {
+                                return name == optimized_name(best_number)
+                                           ? std::vector{best}
+                                           : std::vector<Candidate>{};
+                              },
+                          .save =
+                              [&](const std::string&, const std::vector<Candidate>& made) {
+                                messages.push_back(made.front().message);
+                              }};
+  design(camera, options, {}, store);
+  EXPECT_THAT(messages, testing::SizeIs(2));
+  EXPECT_THAT(messages, testing::Each(HasSubstr("another number of exposures is better")));
+}
+
+TEST(Optimize, HasNoErrorToBeatIfExposuresAreListedOrAnotherCriterionRanks) {
+  Candidate made{.code = build_family("hamiltonian-k3", small_camera()), .method = "optimize"};
+  made.search = SearchRecord{.steps = {{1, 0.5}, {2, 0.2}}};
+  const auto to_beat_m = [&](const Camera& camera, const DesignOptions& options) {
+    return error_to_beat_m(camera, options, std::span(&made, 1));
+  };
+  EXPECT_EQ(to_beat_m(small_camera(), {}), 0.2);
+  EXPECT_EQ(to_beat_m(small_camera(), {.exposures = {3, 4}}), infinity);
+  EXPECT_EQ(to_beat_m(small_camera(), {.split_exposures = true}), infinity);
+  EXPECT_EQ(to_beat_m(small_camera(), {.robust = true}), infinity);
+  Camera multipath = small_camera(), squares = multipath, saturating = multipath;
+  multipath.operating.multipath = OperatingMultipath();
+  squares.operating.statistic = ErrorStatistic::rmse;
+  saturating.sensor.full_well_e = 1e4;
+  for (const Camera& camera : {multipath, squares, saturating})
+    EXPECT_EQ(to_beat_m(camera, {}), infinity);
+  made.method = "factorize";
+  EXPECT_EQ(to_beat_m(small_camera(), {}), infinity);
+}
+
 double amplitude_of_frequency_1(const Eigen::VectorXd& samples) {
   std::complex<double> sum = 0.0;
   for (Eigen::Index n = 0; n < samples.size(); ++n)
@@ -306,6 +373,7 @@ TEST(OptimizableExposures, AreTheNumbersOfTheBestAtlasCodesUnlessListed) {
   };
   EXPECT_THAT(of({}), testing::Contains(6));
   EXPECT_EQ(of({}).size(), 3u);
+  EXPECT_EQ(of({}).front(), contending_atlas_codes(camera, {}).codes.front().exposures());
   EXPECT_THAT(of({.exposures = {4}}), testing::ElementsAre(4));
   EXPECT_EQ(of({.atlas_cameras = 0}), suggested_exposures(camera, DesignMethod::optimize));
 }

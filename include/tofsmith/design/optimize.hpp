@@ -85,7 +85,8 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
 ///
 /// For analog arms, the result includes the codes of a search for binary arms; from twice the
 /// default effort on (with_effort()), also of a search of half the effort. More freedom or effort
-/// thus loses no code.
+/// thus loses no code. design() ends a search early if another number of exposures is clearly
+/// better.
 /// @param exposures  1 to 8, with at least 3 measurements (2 differences)
 /// @param also  starts, if they have the same number of exposures
 /// @return feasible codes named "optimized-k<exposures>" for judge(), which computes their errors:

@@ -99,7 +99,8 @@ void sort_by_error(std::vector<FinishedCode>& codes) {
   });
 }
 
-/// Polishes the edges of all entries, then again those of the two best results, with less noise.
+/// Polishes the edges of all entries, then again those of the two best results, with less noise,
+/// unless another number of exposures is better.
 /// @param key     of the random numbers
 /// @param before  number of codes from earlier stages, for random numbers
 std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
@@ -110,7 +111,8 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const Cod
   constexpr int more_trials = 4;
   const Sharpness sharpness = final_sharpness(problem);
   const int polish_steps = options.polish ? options.polish_steps : 0;
-  const std::size_t again = polish_steps > 0 ? std::min(polished_again, entries.size()) : 0;
+  const bool polishes_again = polish_steps > 0 && !pool.lost_to_rival();
+  const std::size_t again = polishes_again ? std::min(polished_again, entries.size()) : 0;
   std::vector<FinishedCode> finished(entries.size());
   SharedProgress shared(progress, static_cast<double>(entries.size() + again) * polish_steps,
                         "edges");
@@ -136,6 +138,11 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const Cod
   return finished;
 }
 
+std::string_view end_of(const OptimizePool& pool) {
+  if (pool.lost_to_rival()) return "; stopped early, because another number of exposures is better";
+  return pool.ended_early() ? "; stopped early without further gain" : "";
+}
+
 /// Returns the best code or, with operating multipath or interference, all of them, because the
 /// optimized error does not contain the whole ranking criterion. Otherwise, judge() would need many
 /// more trials to distinguish them.
@@ -152,12 +159,9 @@ std::vector<Candidate> candidates_of(const DesignProblem& problem, OptimizePool&
     const bool has_shares = !code.exposure_shares().empty();
     Candidate candidate{.code = signed_by(code, "optimize", camera, options.seed),
                         .method = "optimize"};
-    candidate.message = fmt::format(
-        "gradient descent from {}{}{}{}", its.start, has_shares ? ", with exposure times" : "",
-        options.polish ? ", with refined edges" : "",
-        pool.lost_to_rival() ? "; stopped early, because another number of exposures is better"
-        : pool.ended_early() ? "; stopped early without further gain"
-                             : "");
+    candidate.message = fmt::format("gradient descent from {}{}{}{}", its.start,
+                                    has_shares ? ", with exposure times" : "",
+                                    options.polish ? ", with refined edges" : "", end_of(pool));
     candidate.per_measurement = reports_of(candidate.code, its.start);
     candidates.push_back(std::move(candidate));
   }
@@ -168,7 +172,7 @@ enum class ExposureTimes { as_in_camera, free };
 
 struct SearchTask {
   ExposureTimes times = ExposureTimes::as_in_camera;
-  /// Smallest error found with other numbers of exposures, in trials of the search.
+  /// error_to_beat_m() of other numbers of exposures.
   double rival_m = infinity;
 };
 
@@ -196,7 +200,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     const ProgressParts parts(of_stages[s], {40, 35, 10, 15, 0.6 * splitting, 0.4 * splitting});
     PoolStage& stage = stages[s];
     pool.run_starts(stage, parts[0]);
-    // Earlier stages find all codes of a search with less effort.
+    // Earlier stages repeat the search with half the effort, so they never end early.
     const bool is_last = s + 1 == stages.size();
     pool.run_hops(stage, is_last ? task.rival_m : infinity, parts[1]);
     if (pool.lost_to_rival())
@@ -236,7 +240,8 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   return candidates;
 }
 
-/// Codes for binary arms also compete and provide one more start.
+/// Codes for binary arms also compete and provide one more start, so their search never loses to
+/// other numbers of exposures.
 std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
                                      const OptimizeOptions& options, std::span<const CodeSet> also,
                                      const SearchTask& task, const Progress& progress) {
@@ -244,7 +249,7 @@ std::vector<Candidate> search_analog(std::span<const Camera> variants, int expos
   std::vector<Camera> switching(variants.begin(), variants.end());
   for (Camera& camera : switching) camera.light.binary = camera.sensor.binary = true;
   std::vector<Candidate> switched =
-      search_codes(switching, exposures, options, also, task, parts[0]);
+      search_codes(switching, exposures, options, also, {.times = task.times}, parts[0]);
   std::vector<CodeSet> starts{switched.front().code.renamed("binary code")};
   starts.insert(starts.end(), also.begin(), also.end());
   std::vector<Candidate> analog =
@@ -286,6 +291,15 @@ std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& optio
     for (PerturbedCamera& perturbed : perturbations(camera, {.peak = 0.0, .tap_mismatch = 0.0}))
       variants.push_back(std::move(perturbed.camera));
   return variants;
+}
+
+/// Returns whether codes are ranked by the error that the search minimizes, and nothing else.
+bool minimizes_ranked_error(const Camera& camera, const DesignOptions& options) {
+  const OperatingRange& range = camera.operating;
+  const bool rounds_values = camera.light.generator || camera.sensor.generator ||
+                             camera.sensor.full_well_e || camera.sensor.adc_bits;
+  return !range.multipath && !range.interference && range.statistic == ErrorStatistic::mae &&
+         !options.robust && !options.split_exposures && !rounds_values;
 }
 
 }  // namespace
@@ -332,12 +346,10 @@ std::string optimized_name(int exposures) { return fmt::format("optimized-k{}", 
 
 double error_to_beat_m(const Camera& camera, const DesignOptions& options,
                        std::span<const Candidate> candidates) {
-  const bool has_other_criterion =
-      camera.operating.multipath || camera.operating.interference || options.split_exposures;
   double least_m = infinity;
-  if (has_other_criterion || !options.exposures.empty()) return least_m;
+  if (!minimizes_ranked_error(camera, options) || !options.exposures.empty()) return least_m;
   for (const Candidate& c : candidates)
-    if (c.method == "optimize" && c.search)
+    if (c.method == "optimize" && c.search && !c.search->steps.empty())
       least_m = std::min(least_m, c.search->steps.back().error_m);
   return least_m;
 }

@@ -86,8 +86,8 @@ double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decode
 }
 
 template <typename Errors>
-std::vector<double> sums_of(Errors errors, const TrialBatch& batch,
-                            const std::vector<double>& decoded_bin) {
+std::vector<double> errors_by_rotation(Errors errors, const TrialBatch& batch,
+                                       const std::vector<double>& decoded_bin) {
   for (std::size_t t = 0; t < decoded_bin.size(); ++t) {  // the end of the last chord is bin 0
     const int samples = errors.samples();
     errors.add(batch.trials[t].depth_periods * samples,
@@ -149,12 +149,13 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
       if (circular && depths.is_uniform()) continue;  // independent of the rotation
       loss.decode(variant.levels[p].point, rotating_[p], decoded_bin);
       const auto kind = circular ? DepthErrorKind::circular : DepthErrorKind::linear;
-      const std::vector<double> sums =
+      const std::vector<double> errors =
           depths.is_uniform()
-              ? sums_of(ErrorByRotation(samples), rotating_[p], decoded_bin)
-              : sums_of(WeighedErrorByRotation(depths, kind, samples), rotating_[p], decoded_bin);
-      for (std::size_t r = 0; r < sums.size(); ++r)
-        log_error[r] += variant.levels[p].weight * std::log(std::max(min_error_bin, sums[r])) /
+              ? errors_by_rotation(ErrorByRotation(samples), rotating_[p], decoded_bin)
+              : errors_by_rotation(WeighedErrorByRotation(depths, kind, samples), rotating_[p],
+                                   decoded_bin);
+      for (std::size_t r = 0; r < errors.size(); ++r)
+        log_error[r] += variant.levels[p].weight * std::log(std::max(min_error_bin, errors[r])) /
                         variant.total_weight();
     }
     for (std::size_t r = 0; r < worst.size(); ++r) worst[r] = std::max(worst[r], log_error[r]);
@@ -429,17 +430,19 @@ void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) 
 }
 
 void OptimizePool::run_hops(const PoolStage& stage, double rival_m, const Progress& progress) {
-  constexpr double first_margin = 0.12, last_margin = 0.02;  // hops reduce errors by up to 10 %
+  // After all starts are continued, hops, refinement and polish reduce errors by up to 10 %.
+  constexpr double first_margin = 0.12, last_margin = 0.02;
   const auto count = static_cast<std::size_t>(stage.hops);
   int without_gain = 0;
-  ended_early_ = false;
+  ended_early_ = lost_to_rival_ = false;
   SharedProgress shared(progress, static_cast<double>(count - hops_done_) * options_.steps_per_hop,
                         "hops");
   for (std::size_t first = hops_done_; first < count; first += hops_together) {
-    const double left =
+    const double remaining =
         static_cast<double>(count - first) / static_cast<double>(count - hops_done_);
-    const double margin = last_margin + left * (first_margin - last_margin);
-    lost_to_rival_ = error_m(entries_.front().score.log_error_bin) > (1.0 + margin) * rival_m;
+    const double margin = last_margin + remaining * (first_margin - last_margin);
+    lost_to_rival_ = first - hops_done_ >= continued_.size() &&
+                     error_m(entries_.front().score.log_error_bin) > (1.0 + margin) * rival_m;
     if (lost_to_rival_) break;
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {

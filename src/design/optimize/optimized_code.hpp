@@ -29,8 +29,10 @@ std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions
 
 std::string optimized_name(int exposures);
 
-/// Returns the smallest error of the optimized codes in `candidates`, in trials of the search.
-/// Infinity if the user lists numbers of exposures, or if more than this error ranks codes.
+/// Returns the smallest error [m] of the optimized codes in `candidates`, evaluated with the trials
+/// of the search. Infinity if the user lists numbers of exposures, or if codes are ranked by more
+/// than the error that the search minimizes: root mean square errors, robustness, multipath,
+/// interference, exposure times, generators, saturation or a converter.
 double error_to_beat_m(const Camera& camera, const DesignOptions& options,
                        std::span<const Candidate> candidates);
 

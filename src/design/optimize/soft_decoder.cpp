@@ -39,18 +39,19 @@ HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
   }
 }
 
-/// Finds the best point of each chord in [first, end), in whole vectors. With u = Q11 b0 - Q01 b1
-/// and v = Q00 b1 - Q01 b0 it is at t = v / (u + v) if both are > 0, otherwise at the better end.
-/// Scores are S_j, or -1 in the padding; returns the largest.
+/// Finds the best point of each chord in [first, past); `first` is a multiple of the vector length,
+/// and the last vector may extend beyond `past`. With u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0
+/// it is at t = v / (u + v) if both are > 0, otherwise at the better end. Scores are S_j, or -1 in
+/// the padding; returns the largest.
 template <typename Value>
-HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve, int first, int end,
+HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve, int first, int past,
                               typename SoftDecoderOf<Value>::Scratch& scratch) {
   const Tag<Value> d;
   const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const auto min_square = hn::Set(d, smallest_square);
   auto largest = hn::Set(d, -1.0f);
-  for (int j = first; j < end; j += lanes) {
+  for (int j = first; j < past; j += lanes) {
     const auto b0 = hn::Load(d, scratch.match.data() + j);
     const auto b1 = hn::LoadU(d, scratch.match.data() + j + 1);
     const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), min_square);
@@ -102,9 +103,9 @@ HWY_INLINE int best_bin(const DecodingCurveOf<Value>& curve,
   const auto wanted = hn::MaxOfLanes(d, largest);
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto lane = hn::FindFirstTrue(d, hn::Eq(hn::Load(d, scratch.ratio.data() + j), wanted));
-    if (lane >= 0) return j + static_cast<int>(lane);
+    if (lane >= 0) return std::min(j + static_cast<int>(lane), curve.samples - 1);
   }
-  return curve.samples - 1;  // not a number
+  return curve.samples - 1;  // all scores are NaN
 }
 
 template <typename Value>
@@ -114,10 +115,9 @@ Value best_place(const DecodingCurveOf<Value>& curve, const Value* electrons,
   const int right = best_bin(curve, scratch);
   const int left = right > 0 ? right - 1 : curve.samples - 1;
   const int lanes = lanes_of(Tag<Value>());
-  for (const int chord : {left, right}) {
-    const int first = chord - chord % lanes;
-    score_chords(curve, first, first + lanes, scratch);
-  }
+  const int left_vector = left - left % lanes, right_vector = right - right % lanes;
+  score_chords(curve, left_vector, left_vector + lanes, scratch);
+  if (right_vector != left_vector) score_chords(curve, right_vector, right_vector + lanes, scratch);
   const auto score = [&](int chord) { return scratch.score[static_cast<std::size_t>(chord)]; };
   const int chord = score(left) > score(right) ? left : right;
   return static_cast<Value>(chord) + scratch.place[static_cast<std::size_t>(chord)];
