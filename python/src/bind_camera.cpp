@@ -73,21 +73,14 @@ void check_light(double signal_e_per_s, double ambient_e_per_s) {
     refuse("ambient_e_per_s", fmt::format("{}", ambient_e_per_s), "a finite number >= 0");
 }
 
-py::array_t<double> expected(const ForwardModel& model, const Doubles& depth_bin, double signal,
-                             double ambient) {
+/// @tparam moment  member of ForwardModel: a vector of the measurements of returns
+template <auto moment>
+py::array_t<double> moments(const ForwardModel& model, const Doubles& depth_bin, double signal,
+                            double ambient) {
   check_light(signal, ambient);
   return rows_by_depth(model, depth_bin, [&](double depth) {
-    const std::vector<Return> returns = {{signal, depth}};
-    return model.expected_electrons(returns, ambient);
-  });
-}
-
-py::array_t<double> variance(const ForwardModel& model, const Doubles& depth_bin, double signal,
-                             double ambient) {
-  check_light(signal, ambient);
-  return rows_by_depth(model, depth_bin, [&](double depth) {
-    const std::vector<Return> returns = {{signal, depth}};
-    return model.variance_e2(returns, ambient);
+    const Return seen{signal, depth};
+    return (model.*moment)({&seen, 1}, ambient);
   });
 }
 
@@ -125,8 +118,8 @@ void bind_forward_model(py::module_& module) {
       .def("dark_electrons", [](const ForwardModel& m) { return adopt(m.dark_electrons()); })
       .def("constant_variance_e2",
            [](const ForwardModel& m) { return adopt(m.constant_variance_e2()); })
-      .def("expected_electrons", &expected)
-      .def("variance_e2", &variance)
+      .def("expected_electrons", &moments<&ForwardModel::expected_electrons>)
+      .def("variance_e2", &moments<&ForwardModel::variance_e2>)
       .def("covariance_e2", &covariance);
 }
 

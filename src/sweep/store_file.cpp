@@ -138,12 +138,6 @@ SqliteStatement& SqliteStatement::bind(int parameter, std::string_view text) {
   return *this;
 }
 
-SqliteStatement& SqliteStatement::bind(int parameter, std::int64_t number) {
-  if (sqlite3_bind_int64(statement_.get(), parameter, number) != SQLITE_OK)
-    database_->fail("cannot bind");
-  return *this;
-}
-
 SqliteStatement& SqliteStatement::bind(int parameter, double number) {
   if (sqlite3_bind_double(statement_.get(), parameter, number) != SQLITE_OK)
     database_->fail("cannot bind");

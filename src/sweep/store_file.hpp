@@ -56,7 +56,6 @@ class SqliteDatabase {
 class SqliteStatement {
  public:
   SqliteStatement& bind(int parameter, std::string_view text);
-  SqliteStatement& bind(int parameter, std::int64_t number);
   SqliteStatement& bind(int parameter, double number);
   /// Returns false after the last row; parameters can then be bound again.
   bool step();

@@ -276,7 +276,7 @@ void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, f
   constexpr float mean_noise = own_light_noise / own_light_side;  // standard deviations of a pixel
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
-    const Vector square = added_square(test, at);
+    const Vector square = square_of(test.added.data(), test.rank, at);
     const Vector added = hn::Sqrt(square), sigma = hn::Sqrt(load(test.variance + at));
     const Vector limit = hn::Mul(all(test.limit_sigma * mean_noise), sigma);
     const Vector evident = hn::Mul(hn::Mul(all(evident_sigma), sigma), added);

@@ -23,7 +23,7 @@ void find_own_amplitude(const OwnLightTest& test, const float* variance, const F
   const Vector across = all(static_cast<float>(test.rank - 1));
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
-    const Vector square = added_square(test, at);
+    const Vector square = square_of(test.added.data(), test.rank, at);
     const Mask is_known =
         hn::And(hn::Gt(square, hn::Zero(Floats())), hn::Gt(load(test.usable + at), all(0.5f)));
     const Vector length = hn::Mul(hn::Sqrt(square), hn::Sqrt(load(test.variance + at)));
@@ -97,7 +97,7 @@ void find_lit_share(const LitTest& test, const FilterGrid& grid, int row, float*
       store(one, share + x);
       continue;
     }
-    const Vector square = added_square(*test.light, at);
+    const Vector square = square_of(test.light->added.data(), test.light->rank, at);
     const Vector added = hn::Div(hn::Sqrt(square), hn::Sqrt(load(test.light->variance + at)));
     const Vector around = mean_around(amplitude, grid.stride);
     const Mask is_lit_around = hn::Or(hn::Le(added, all(lit_around_sigma)),

@@ -16,15 +16,6 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-HWY_INLINE Vector added_square(const OwnLightTest& test, std::ptrdiff_t at) {
-  Vector square = hn::Zero(Floats());
-  for (int j = 0; j < test.rank; ++j) {
-    const Vector u = load(test.added.data()[j] + at);
-    square = hn::MulAdd(u, u, square);
-  }
-  return square;
-}
-
 /// Scalar product of the measured light of one pixel and the added light of another.
 HWY_INLINE Vector along_added(const OwnLightTest& test, std::ptrdiff_t added,
                               std::ptrdiff_t measured) {

@@ -18,6 +18,16 @@ namespace {
 HWY_INLINE Vector load(const float* from) { return hn::LoadU(Floats(), from); }
 HWY_INLINE void store(Vector value, float* to) { hn::StoreU(value, Floats(), to); }
 
+/// Squared length of the vector in several planes.
+HWY_INLINE Vector square_of(const float* const* planes, int rank, std::ptrdiff_t at) {
+  Vector square = hn::Zero(Floats());
+  for (int j = 0; j < rank; ++j) {
+    const Vector u = load(planes[j] + at);
+    square = hn::MulAdd(u, u, square);
+  }
+  return square;
+}
+
 /// Decreases smoothly from 1 without difference to 0 from the maximum on.
 HWY_INLINE Vector weight_of(Vector difference, Vector inverse_max) {
   const Vector zero = hn::Zero(Floats());

@@ -259,15 +259,6 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
   }
 }
 
-HWY_INLINE Vector near_square(const NearAndFar& sums, std::ptrdiff_t at) {
-  Vector square = hn::Zero(Floats());
-  for (int j = 0; j < sums.rank; ++j) {
-    const Vector u = load(sums.near.data()[j] + at);
-    square = hn::MulAdd(u, u, square);
-  }
-  return square;
-}
-
 /// Replaces a share of the far sum by the near sum. The covariance of both sums equals the variance
 /// of the far sum, which is the mean of all pixels.
 HWY_INLINE void keep_share(const NearAndFar& sums, std::ptrdiff_t at, Vector kept, Vector share2,
@@ -324,7 +315,8 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
     }
     const Vector near_variance = load(sums.near_variance + at);
     const Vector bright = hn::Mul(near_variance, all(bright_sigma * bright_sigma));
-    best = hn::Max(best, hn::IfThenElseZero(hn::Gt(near_square(sums, at), bright), bent));
+    best = hn::Max(
+        best, hn::IfThenElseZero(hn::Gt(square_of(sums.near.data(), sums.rank, at), bright), bent));
     const Vector kept =
         hn::Max(kept_of(hn::Max(around, zero), half_kept), kept_of(best, half_kept_along_lines));
     store(kept, sums.kept + at);
@@ -339,7 +331,8 @@ void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row) {
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
     const Vector near_variance = hn::Max(load(sums.near_variance + at), all(1e-12f));
-    const Vector sigmas = hn::Sqrt(hn::Div(near_square(sums, at), near_variance));
+    const Vector sigmas =
+        hn::Sqrt(hn::Div(square_of(sums.near.data(), sums.rank, at), near_variance));
     const Vector kept =
         hn::Min(hn::Max(hn::MulSub(sigmas, all(1.0f / bright_sigma), one), zero), one);
     if (!hn::AllTrue(Floats(), hn::Le(kept, zero)))
