@@ -89,10 +89,8 @@ class CirculantTvSolver {
 
 /// Solves by the active set; if that stalls, by ADMM and by the active set from ADMM's pieces.
 /// Returns the result with the smallest certificate.
-/// @param warm_start  (N, finite), or empty
 /// @throws InvalidArgument for invalid arguments
 CirculantTvResult solve_circulant_tv(const CirculantTvProblem& problem,
-                                     const CirculantTvOptions& options = {},
-                                     const std::optional<Eigen::VectorXd>& warm_start = {});
+                                     const CirculantTvOptions& options = {});
 
 }  // namespace tofsmith

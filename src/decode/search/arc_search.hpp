@@ -14,8 +14,7 @@ class ArcSearch {
  public:
   static constexpr double min_distance = 2 * ArcTable::min_window_radius;
 
-  explicit ArcSearch(const DirectionTable& directions, std::int32_t blocks_per_arc = 1)
-      : table_(directions, blocks_per_arc) {}
+  explicit ArcSearch(const DirectionTable& directions) : table_(directions) {}
 
   const ArcTable& table() const { return table_; }
 

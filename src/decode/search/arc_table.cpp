@@ -150,11 +150,11 @@ KnotLevel::KnotLevel(const DirectionTable& directions, std::int32_t rows_per_arc
   }
 }
 
-ArcTable::ArcTable(const DirectionTable& directions, std::int32_t blocks_per_arc)
+ArcTable::ArcTable(const DirectionTable& directions)
     : samples_(directions.samples()),
       rank_(directions.rank()),
       lanes_per_block_(static_cast<std::size_t>(rank_) + 1),
-      arcs_(directions, std::max(blocks_per_arc, min_blocks_per_arc(samples_)) * block_lanes),
+      arcs_(directions, min_blocks_per_arc(samples_) * block_lanes),
       bundles_(directions, arcs_.rows_per_arc() * arcs_per_block) {
   const std::vector<float> offset = offsets_of_rows(directions);
   fill_rows(directions, offset);

@@ -66,8 +66,7 @@ class ArcTable {
  public:
   static constexpr double min_window_radius = 1e-3;
 
-  /// @param blocks_per_arc  minimum number of blocks of 16 rows per arc
-  ArcTable(const DirectionTable& directions, std::int32_t blocks_per_arc);
+  explicit ArcTable(const DirectionTable& directions);
 
   int samples() const { return samples_; }
   int rank() const { return rank_; }
@@ -75,7 +74,7 @@ class ArcTable {
   /// Bundles of 15 arcs, each one block of `arcs()`.
   const KnotLevel& bundles() const { return bundles_; }
 
-  /// 1, or more for very long curves.
+  /// Blocks of 16 rows per arc: 1, or more for very long curves.
   std::int32_t blocks_per_arc() const { return arcs_.rows_per_arc() / block_lanes; }
   std::int32_t row_blocks() const { return (samples_ + block_lanes - 1) / block_lanes; }
 

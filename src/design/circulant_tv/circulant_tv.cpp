@@ -62,12 +62,10 @@ bool CirculantTvResult::is_usable() const {
 }
 
 CirculantTvResult solve_circulant_tv(const CirculantTvProblem& problem,
-                                     const CirculantTvOptions& options,
-                                     const std::optional<Eigen::VectorXd>& warm_start) {
+                                     const CirculantTvOptions& options) {
   problem.validate();
   CirculantTvSolver solver(problem.samples());
-  CirculantTvResult best =
-      warm_start ? solver.solve(problem, options, *warm_start) : solver.solve(problem, options);
+  CirculantTvResult best = solver.solve(problem, options);
   if (best.termination == Termination::converged) return best;
 
   const CirculantTvAdmmOptions admm_options{.max_iterations = 3000,
