@@ -54,7 +54,7 @@ void TableArguments::add_to(CLI::App& command) {
       .add_option(
           "--table-axes", axes_,
           "axes of a measured table: samples x measurements (nk) or measurements x samples (kn) "
-          "(default: as the shape permits)")
+          "(default: nk, or kn if only kn fits; required if both fit and N <= K)")
       ->check(one_of({"nk", "kn"}))
       ->group(for_experts);
   command

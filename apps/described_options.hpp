@@ -49,7 +49,8 @@ std::vector<std::string> texts_of_words() {
 
 }  // namespace detail
 
-/// Adds an option with the help text, range, words, default and condition of a field.
+/// Adds an option with the help text, range, words, default and condition of a field. If the
+/// condition is another option of the command, that option must have been added before.
 /// @param option  such as "--trials"; of a flag that clears the field, "!--no-map"
 template <typename Value>
 CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,

@@ -67,8 +67,8 @@ void OperatingMultipathArguments::add_to(CLI::App& command, OptimizeOptions& opt
   command
       .add_option("--multipath-weight", weight_,
                   fmt::format("weight w in the objective E1^(1-w) E2^w; E1 is the error without "
-                              "multipath, E2 the error with multipath (default: the camera's, "
-                              "otherwise {})",
+                              "multipath, E2 the error with multipath (default: the camera's "
+                              "operating.multipath.weight, otherwise {})",
                               OperatingMultipath().weight))
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
   two_return_weight_ =

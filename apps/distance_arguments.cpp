@@ -28,7 +28,7 @@ void DistanceArguments::add_to(CLI::App& command) {
       ->needs(distance);
   command
       .add_option("--klux", klux_,
-                  "sunlight on the surfaces at --distance [klx] (default: the camera's)")
+                  "sunlight on the surfaces at --distance [klx] (default: the camera's [optics])")
       ->check(number_from_0_on())
       ->transform(number_in("klx"))
       ->needs(distance);
