@@ -196,13 +196,13 @@ constexpr std::array<std::string_view, 3> words_of(Fruit /*any*/) {
 enum class Nut { hazel };
 constexpr std::array<std::string_view, 1> words_of(Nut /*any*/) { return {"hazel"}; }
 
-TEST(EnumWords, EveryValueIsReadBackFromItsWord) {
+TEST(WordsOfEnumerations, EveryValueIsReadBackFromItsWord) {
   for (const Fruit fruit : {Fruit::apple, Fruit::pear, Fruit::plum})
     EXPECT_EQ(parse_word<Fruit>("fruit", name_of(fruit)), fruit);
   EXPECT_EQ(name_of(Fruit::pear), "pear");
 }
 
-TEST(EnumWords, UnknownWordsAndValuesAreRejectedWithTheKnownOnes) {
+TEST(WordsOfEnumerations, UnknownWordsAndValuesAreRejectedWithTheKnownOnes) {
   const auto message_of = [](const auto& call) -> std::string {
     try {
       call();
@@ -216,7 +216,7 @@ TEST(EnumWords, UnknownWordsAndValuesAreRejectedWithTheKnownOnes) {
             }).find("fruit = fig; must be apple, pear or plum"),
             std::string::npos);
   EXPECT_EQ(message_of([] { name_of(static_cast<Fruit>(3)); }),
-            "value = 3; must be one with a word");
+            "value of an enumeration = 3; must be in [0, 2]");
   EXPECT_EQ(message_of([] { parse_word<Nut>("nut", "fig"); }), "nut = fig; must be hazel");
 }
 

@@ -89,7 +89,9 @@ template <HasWords Enum>
 std::string_view name_of(Enum value) {
   const auto words = words_of(value);
   const auto at = static_cast<std::size_t>(value);
-  require(at < words.size(), "value", at, "must be one with a word");
+  if (at >= words.size())
+    reject("value of an enumeration", std::to_string(at),
+           "must be in [0, " + std::to_string(words.size() - 1) + "]");
   return words[at];
 }
 

@@ -34,6 +34,7 @@ inline void parallel_for_indices(std::size_t count, const std::function<void(std
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
+  ThreadLimit(ThreadLimit&&) = delete;  // limits end in reverse order
 
  private:
   struct Control;
