@@ -14,6 +14,7 @@
 #include <limits>
 #include <set>
 
+#include "core/shared/text_numbers.hpp"
 #include "decode_recording_fixture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
@@ -280,7 +281,8 @@ TEST_F(DecodeRecording, MemoryIncludesThePlanesThatDepthLimitsRequire) {
       decode_recording(asked, *backend_);
     } catch (const IoError& error) {
       const std::string text = error.what(), before = " require ";
-      return std::stod(text.substr(text.find(before) + before.size()));
+      std::string_view rest = std::string_view(text).substr(text.find(before) + before.size());
+      return take_number(rest).value_or(0.0);
     }
     return 0.0;
   };
@@ -339,13 +341,13 @@ TEST(DecodedPlanes, HaveUniqueNames) {
   std::set<std::string_view> names;
   for (const PlaneDescription& described : plane_descriptions) {
     names.insert(name_of(described.plane));
-    EXPECT_EQ(usual_word(DecodedPlane{}, described.word), name_of(described.plane));
-    EXPECT_EQ(usual_word(DecodedPlane{}, described.member), name_of(described.plane));
+    for (const std::string_view word : {described.word, described.member})
+      EXPECT_EQ(parse_word<DecodedPlane>("plane", word), described.plane);
     EXPECT_THAT(std::string(help_of_outputs()), HasSubstr(std::string(described.help)));
   }
   EXPECT_EQ(names.size(), plane_descriptions.size());
-  EXPECT_EQ(usual_word(DecodedPlane{}, "amplitude"), name_of(DecodedPlane::signal));
-  EXPECT_EQ(usual_word(DecodedPlane{}, "depth_mm"), "depth_mm");
+  EXPECT_EQ(parse_word<DecodedPlane>("plane", "amplitude"), DecodedPlane::signal);
+  EXPECT_THROW(parse_word<DecodedPlane>("plane", "depth_mm"), std::invalid_argument);
   EXPECT_EQ(usual_planes().size(), 6u);
   EXPECT_EQ(usual_planes(true).size(), 9u);
 }

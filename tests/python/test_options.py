@@ -55,7 +55,14 @@ def functions_with_described_options():
                 yield value
 
 
-@pytest.mark.parametrize("function", functions_with_described_options(),
+described_functions = list(functions_with_described_options())
+
+
+def test_functions_with_described_options_are_found():
+    assert {ts.Decoder.__init__, ts.evaluate, ts.instruments.upload} <= set(described_functions)
+
+
+@pytest.mark.parametrize("function", described_functions,
                          ids=lambda function: function.__qualname__)
 def test_keywords_are_those_of_the_annotated_class(function):
     own = dict(inspect.signature(function.__wrapped__).parameters)

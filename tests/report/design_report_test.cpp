@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/shared/text_numbers.hpp"
 #include "design_setup.hpp"
 #include "report/design_sections.hpp"
 #include "tofsmith/report/code_figures.hpp"
@@ -90,9 +91,10 @@ TEST(DesignReport, ShowsTheBestCodeFirstAndFoldsOtherSections) {
   EXPECT_EQ(table.highlighted_row, 0);
   EXPECT_EQ(table.rows.at(0).at(0), result.winner().code.name());
   EXPECT_EQ(table.rows.at(0).back(), "1.00");
-  const double best_mm = std::stod(table.rows.at(0).at(2));
+  const auto number = [](std::string_view text) { return take_number(text).value(); };
+  const double best_mm = number(table.rows.at(0).at(2));
   for (const std::vector<std::string>& row : table.rows)  // errors are rounded to 0.1 mm
-    EXPECT_NEAR(std::stod(row.at(3)), std::stod(row.at(2)) / best_mm, 0.006 + 0.2 / best_mm);
+    EXPECT_NEAR(number(row.at(3)), number(row.at(2)) / best_mm, 0.006 + 0.2 / best_mm);
   const std::string text = page_document(page);
   EXPECT_THAT(text, HasSubstr("tofsmith decode --camera camera.toml"));
   EXPECT_THAT(text, Not(HasSubstr("points.ply")));
