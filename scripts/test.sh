@@ -74,7 +74,7 @@ fi
 
 # A program whose tests are all excluded passes, so that a misspelled filter would pass. The target
 # `all` builds every test_*.
-if [[ -n "${GTEST_FILTER:-}" ]]; then
+if [[ -n "${GTEST_FILTER:-}" && "$preset" != dev ]]; then
   matches=
   for target in "${targets[@]/#all/test_*}"; do
     for program in "$build/tests/"$target; do
