@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Links from pages into the code: which file, and the line on which a named symbol is defined.
 
-A page writes [`Decoder::decode`](../include/tofsmith/decode/decoder.hpp): a plain link for whoever
+A page writes [`Decoder::rank`](../include/tofsmith/decode/decoder.hpp): a plain link for whoever
 reads the file as it is, and on the site the line. Lines are looked up, never written by hand.
 """
 

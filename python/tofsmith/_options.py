@@ -19,9 +19,9 @@ Kind = TypeVar("Kind", bound=Callable[..., Any])
 
 
 def takes(kind: type[Any]) -> Callable[[Kind], Kind]:
-    """Decorator for a function or class whose `**options` are keys of a dict of _option_fields. Adds
-    the options to the signature and, replacing the entry `**options`, to the docstring. Rejects
-    other names."""
+    """Decorator for a function or class whose `**options` are keys of a dict of _option_fields.
+    Adds the options to the signature and, replacing the entry `**options`, to the docstring.
+    Rejects other names."""
     options = OPTIONS[kind]
 
     def decorate(target: Any) -> Any:

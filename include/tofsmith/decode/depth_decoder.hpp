@@ -49,7 +49,7 @@ class DepthDecoder {
   virtual const DecodingTable& table() const = 0;
   int measurements() const { return table().measurements(); }
   int samples() const { return table().bin_count(); }
-  /// Returns true for decoders of later light: of a second return or a tail.
+  /// Returns true for the methods two_return and tail.
   bool finds_returns() const {
     return method() == DecodeMethod::two_return || method() == DecodeMethod::tail;
   }

@@ -117,7 +117,7 @@ struct RawFormat {
   /// Returns true if decoded numbers exceed the precision of floats.
   bool needs_doubles() const { return bits > 24 && !(numbers == RawNumbers::floats && bits == 32); }
   int sign_bit_index() const { return sign_bit.value_or(bits - 1); }
-  /// Bits of a number in the file, with those of its container.
+  /// Bits that a number occupies in the file, including unused bits of its container.
   int stored_bits() const;
 
   std::size_t numbers_per_row() const;

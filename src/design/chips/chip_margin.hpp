@@ -35,7 +35,8 @@ std::optional<BrokenRule> why_not_plain(const Camera& camera);
 inline constexpr int max_chip_measurements = 16;
 
 /// Returns true if two real depths can have equal measurements at suitable light levels. Exact
-/// (integers).
+/// (integers). Defined in chip_code.cpp.
+/// @throws std::invalid_argument if the code is invalid
 bool is_ambiguous(const ChipCode& code);
 
 /// Noise-normalized distances between depths: the minimum over all depths z, z' with a circular
