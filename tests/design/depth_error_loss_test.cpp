@@ -97,7 +97,7 @@ TEST(DepthErrorLoss, DecodesToTheBestPointNextToTheBestBin) {
         const TrialBatch one = only(batch, t);
         double expected = 0.0;
         reference_soft_error(camera, table, setting.point, one, 1.0, true, &expected);
-        EXPECT_NEAR(decoded[t], expected, 1e-3);
+        EXPECT_NEAR(decoded[t], expected, 5e-3);  // single precision, at a flat maximum
       }
     }
   });

@@ -263,7 +263,7 @@ TEST(Optimize, DesignsTellSearchesTheErrorToBeat) {
   options.optimize = small_options();
   options.optimize.hops = 15;
   options.baselines.emplace();
-  options.trials = 200;
+  options.trials = 1000;
   const int best_number =
       optimizable_exposures(camera, options, contending_atlas_codes(camera, options)).front();
   Candidate best = optimize(camera, best_number, small_options()).front();
