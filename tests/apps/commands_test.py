@@ -228,7 +228,7 @@ class Commands(CommandLineTest):
     def test_help_states_defaults_conditions_and_examples(self):
         for command, words in (
                 ("evaluate", "(default: the camera's sensor.decoder)"),
-                ("design", "(default: the camera's, otherwise 0.2)"),
+                ("design", "(default: the camera's operating.multipath.weight, otherwise 0.2)"),
                 ("require", "default effort of a design (in [0.01, 100]; default: 0.1; requires "
                  "--exact)"),
                 ("export", "Example: tofsmith export hamiltonian-k4 --camera mine.toml --format")):
