@@ -117,8 +117,8 @@ std::vector<DecodedPlane> planes_for(const PlaneCorrections& corrections,
 /// plane `averaged` requires FrameSteps::keeps_filtered, and a frame with mixed pixels is filtered
 /// again without them.
 /// @param first_row, rows  submitted rows
-/// @param decoded          planes whose first value belongs to the first row; those of planes_for()
-///                         that are null are computed in temporary memory
+/// @param decoded          planes whose first value belongs to the first row; null planes that
+///                         planes_for() returns are computed in temporary memory
 /// @throws as FramePipeline::decode()
 void decode_frame(FramePipeline& pipeline, const PlaneCorrections& corrections, int first_row,
                   int rows, const DecodedView& decoded, const Progress& progress = {});

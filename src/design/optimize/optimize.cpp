@@ -99,7 +99,7 @@ void sort_by_error(std::vector<FinishedCode>& codes) {
   });
 }
 
-/// Polishes the edges of all entries, then again those of the two best results, with less noise,
+/// Polishes the edges of all entries. Then polishes the two best results again, with less noise,
 /// unless another number of exposures is better.
 /// @param key     of the random numbers
 /// @param before  number of codes from earlier stages, for random numbers

@@ -430,7 +430,7 @@ void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) 
 }
 
 void OptimizePool::run_hops(const PoolStage& stage, double rival_m, const Progress& progress) {
-  // After all starts are continued, hops, refinement and polish reduce errors by up to 10 %.
+  // The rest of a search (hops, refinement and polish) reduces errors by up to 10 %.
   constexpr double first_margin = 0.12, last_margin = 0.02;
   const auto count = static_cast<std::size_t>(stage.hops);
   int without_gain = 0;
