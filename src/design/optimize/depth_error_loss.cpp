@@ -13,20 +13,19 @@ DepthErrorLoss::DepthErrorLoss(const SampledCamera& camera, MeasurementTable tab
                                MeasurementTimes times, DepthErrorKind kind)
     : camera_(&camera),
       table_(std::move(table)),
+      correlation_of_bin_(table_.correlation.transpose()),
+      shot_of_bin_(table_.shot_correlation.transpose()),
       times_(std::move(times)),
       dark_variance_e2_per_s_(camera.dark_variance_e2_per_s()),
       circular_(kind == DepthErrorKind::circular),
       curve_(camera, table_, times_.exposure_s),
       decoder_(curve_),
       curve_gradient_(curve_),
-      reading_gradient_(zeros_like(table_)),
-      by_exposure_s_(Eigen::VectorXd::Zero(table_.measurements())) {
-  const auto measurements = static_cast<std::size_t>(table_.measurements());
-  reading_.electrons.resize(measurements);
-  reading_.deviation_e.resize(measurements);
-  reading_.light_e_per_s.resize(measurements);
-  reading_.shot_light_e_per_s.resize(measurements);
-  by_electrons_.resize(measurements);
+      by_exposure_s_(Eigen::VectorXd::Zero(table_.measurements())),
+      by_electrons_(static_cast<std::size_t>(table_.measurements())) {
+  by_light_ = {Eigen::ArrayXXd::Zero(table_.measurements(), table_.samples()),
+               Eigen::ArrayXd::Zero(table_.measurements())};
+  if (has_own_shot()) by_shot_light_ = by_light_;
 }
 
 double DepthErrorLoss::mean_variance_e2(const OperatingPoint& point) const {
@@ -42,59 +41,58 @@ DepthErrorLoss::Place DepthErrorLoss::place_at(double depth_periods, double sign
   return {bin, bin + 1 < samples ? bin + 1 : 0, position - bin, signal_e_per_s};
 }
 
+void DepthErrorLoss::add_light(const Eigen::ArrayXXd& of_bin, Eigen::ArrayXd& light_e_per_s) const {
+  for (const Place& place : reading_.places)
+    light_e_per_s += place.signal_e_per_s * ((1.0 - place.fraction) * of_bin.col(place.bin) +
+                                             place.fraction * of_bin.col(place.next));
+}
+
 void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial) {
   const DepthTrial& truth = batch.trials[trial];
   const double signal_e_per_s = truth.albedo * point.signal_e_per_s;
-  reading_.places = {place_at(truth.depth_periods, signal_e_per_s)};
+  reading_.places.assign(1, place_at(truth.depth_periods, signal_e_per_s));
   if (truth.multipath_ratio > 0.0)
     reading_.places.push_back(place_at(wrap(truth.depth_periods + truth.later_delay_periods, 1.0),
                                        truth.multipath_ratio * signal_e_per_s));
-  const double* normals = batch.normals_of(trial);
-  const Eigen::MatrixXd& shot = table_.shot();
-  const Eigen::VectorXd& shot_ambient = table_.shot_ambient();
-  for (int i = 0; i < table_.measurements(); ++i) {
-    const double time_s = times_.exposure_s[i];
-    double light = point.ambient_e_per_s * table_.ambient_gain[i];
-    double shot_light = point.ambient_e_per_s * shot_ambient[i];
-    for (const Place& place : reading_.places) {
-      light += place.signal_e_per_s * place.between(table_.correlation, i);
-      shot_light += place.signal_e_per_s * place.between(shot, i);
-    }
-    const double deviation =
-        std::sqrt(std::max(1e-6, time_s * shot_light + times_.constant_variance_e2[i]));
-    const auto k = static_cast<std::size_t>(i);
-    reading_.light_e_per_s[k] = light;
-    reading_.shot_light_e_per_s[k] = shot_light;
-    reading_.deviation_e[k] = deviation;
-    reading_.electrons[k] = static_cast<float>(time_s * light + deviation * normals[i]);
+  Eigen::ArrayXd& light = reading_.light_e_per_s;
+  light = point.ambient_e_per_s * table_.ambient_gain.array();
+  add_light(correlation_of_bin_, light);
+  if (has_own_shot()) {
+    reading_.shot_light_e_per_s = point.ambient_e_per_s * table_.shot_ambient().array();
+    add_light(shot_of_bin_, reading_.shot_light_e_per_s);
   }
+  const Eigen::ArrayXd& shot_light = has_own_shot() ? reading_.shot_light_e_per_s : light;
+  const auto time_s = times_.exposure_s.array();
+  reading_.deviation_e =
+      (time_s * shot_light + times_.constant_variance_e2.array()).max(1e-6).sqrt();
+  const Eigen::Map<const Eigen::ArrayXd> normals(batch.normals_of(trial), table_.measurements());
+  reading_.electrons = (time_s * light + reading_.deviation_e * normals).cast<float>();
 }
 
 void DepthErrorLoss::pull_back_reading(const OperatingPoint& point, const double* normals,
                                        double weight) {
-  const bool apart = reading_gradient_.shot_correlation.size() > 0;
-  Eigen::MatrixXd& by_shot =
-      apart ? reading_gradient_.shot_correlation : reading_gradient_.correlation;
-  Eigen::VectorXd& by_shot_ambient =
-      apart ? reading_gradient_.shot_ambient_gain : reading_gradient_.ambient_gain;
-  for (int i = 0; i < table_.measurements(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double by_mean = weight * by_electrons_[k] * times_.exposure_s[i];
-    const double by_variance = by_mean * normals[i] / (2.0 * reading_.deviation_e[k]);
-    by_exposure_s_[i] +=
-        (by_mean * reading_.light_e_per_s[k] +
-         by_variance * (reading_.shot_light_e_per_s[k] + dark_variance_e2_per_s_[i])) /
-        times_.exposure_s[i];
-    reading_gradient_.ambient_gain[i] += by_mean * point.ambient_e_per_s;
-    by_shot_ambient[i] += by_variance * point.ambient_e_per_s;
-    for (const Place& place : reading_.places) {
-      const double lower = place.signal_e_per_s * (1.0 - place.fraction);
-      const double upper = place.signal_e_per_s * place.fraction;
-      reading_gradient_.correlation(place.bin, i) += by_mean * lower;
-      reading_gradient_.correlation(place.next, i) += by_mean * upper;
-      by_shot(place.bin, i) += by_variance * lower;
-      by_shot(place.next, i) += by_variance * upper;
-    }
+  const int measurements = table_.measurements();
+  const auto time_s = times_.exposure_s.array();
+  const Eigen::Map<const Eigen::ArrayXf> by_electrons(by_electrons_.data(), measurements);
+  const Eigen::ArrayXd& shot_light =
+      has_own_shot() ? reading_.shot_light_e_per_s : reading_.light_e_per_s;
+  BinGradients& by_shot_light = has_own_shot() ? by_shot_light_ : by_light_;
+  Eigen::ArrayXd &by_mean = reading_.by_mean, &by_variance = reading_.by_variance;
+  by_mean = weight * by_electrons.cast<double>() * time_s;
+  by_variance = by_mean * Eigen::Map<const Eigen::ArrayXd>(normals, measurements) /
+                (2.0 * reading_.deviation_e);
+  by_exposure_s_.array() += (by_mean * reading_.light_e_per_s +
+                             by_variance * (shot_light + dark_variance_e2_per_s_.array())) /
+                            time_s;
+  by_light_.ambient_gain += by_mean * point.ambient_e_per_s;
+  by_shot_light.ambient_gain += by_variance * point.ambient_e_per_s;
+  for (const Place& place : reading_.places) {
+    const double lower = place.signal_e_per_s * (1.0 - place.fraction);
+    const double upper = place.signal_e_per_s * place.fraction;
+    by_light_.correlation.col(place.bin) += by_mean * lower;
+    by_light_.correlation.col(place.next) += by_mean * upper;
+    by_shot_light.correlation.col(place.bin) += by_variance * lower;
+    by_shot_light.correlation.col(place.next) += by_variance * upper;
   }
 }
 
@@ -144,7 +142,13 @@ void DepthErrorLoss::decode(const OperatingPoint& point, const TrialBatch& batch
 }
 
 MeasurementTable DepthErrorLoss::gradient(Eigen::VectorXd* by_exposure_s) const {
-  MeasurementTable result = reading_gradient_;
+  MeasurementTable result;
+  result.correlation = by_light_.correlation.transpose();
+  result.ambient_gain = by_light_.ambient_gain;
+  if (has_own_shot()) {
+    result.shot_correlation = by_shot_light_.correlation.transpose();
+    result.shot_ambient_gain = by_shot_light_.ambient_gain;
+  }
   CurveGradient by_curve = curve_gradient_;
   if (two_returns_) two_returns_->pull_back(by_curve);
   by_curve.pull_back(*camera_, table_, curve_, result, by_exposure_s);

@@ -48,18 +48,21 @@ class DepthErrorLoss {
     int bin = 0, next = 0;
     double fraction = 0.0;
     double signal_e_per_s = 0.0;
-
-    double between(const Eigen::MatrixXd& values, int i) const {
-      return (1.0 - fraction) * values(bin, i) + fraction * values(next, i);
-    }
   };
   struct Reading {
     std::vector<Place> places;
-    std::vector<float> electrons;
-    std::vector<double> deviation_e;
-    std::vector<double> light_e_per_s, shot_light_e_per_s;
+    Eigen::ArrayXf electrons;
+    Eigen::ArrayXd deviation_e, light_e_per_s, shot_light_e_per_s;
+    Eigen::ArrayXd by_mean, by_variance;
   };
+  /// Gradients w.r.t. correlation functions and the gain of ambient light.
+  struct BinGradients {
+    Eigen::ArrayXXd correlation;  ///< (measurements, samples)
+    Eigen::ArrayXd ambient_gain;
+  };
+  bool has_own_shot() const { return shot_of_bin_.size() > 0; }
   Place place_at(double depth_periods, double signal_e_per_s) const;
+  void add_light(const Eigen::ArrayXXd& of_bin, Eigen::ArrayXd& light_e_per_s) const;
   void read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial);
   void pull_back_reading(const OperatingPoint& point, const double* normals, double weight);
   /// Null if the batch is decoded as one return.
@@ -67,6 +70,8 @@ class DepthErrorLoss {
 
   const SampledCamera* camera_;
   MeasurementTable table_;
+  /// Correlation functions, (measurements, samples); of the shot noise: empty if equal.
+  Eigen::ArrayXXd correlation_of_bin_, shot_of_bin_;
   MeasurementTimes times_;
   Eigen::VectorXd dark_variance_e2_per_s_;
   bool circular_;
@@ -74,7 +79,7 @@ class DepthErrorLoss {
   SoftDecoder decoder_;
   std::optional<SoftTwoReturnDecoder> two_returns_;
   CurveGradient curve_gradient_;
-  MeasurementTable reading_gradient_;
+  BinGradients by_light_, by_shot_light_;  ///< by_shot_light_ is empty if the light is equal
   Eigen::VectorXd by_exposure_s_;
   Reading reading_;
   std::vector<float> by_electrons_;
