@@ -15,6 +15,7 @@
 #include "design/judge.hpp"
 #include "design/rows/tone_rows.hpp"
 #include "design/run_lengths.hpp"
+#include "simulate/shared/error_by_rotation.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
@@ -74,8 +75,9 @@ double first_error_m(const CodeSet& code, const Camera& camera, int trials, std:
   // Circular errors with interference are the same at every origin.
   if (camera.operating.interference || !rotates(camera, {}))
     return circular_error_m(code, camera, options);
+  // Without smoothing, the least error of a poor code is often less by chance.
   const std::vector<double> of_rotation =
-      best_rotation(code, camera, options).linear_geometric_mean_m;
+      smoothed_over_rotations(best_rotation(code, camera, options).linear_geometric_mean_m);
   return *std::min_element(of_rotation.begin(), of_rotation.end());
 }
 
@@ -228,6 +230,8 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
 Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options,
                                   std::optional<int> trials) {
   constexpr std::size_t max_of_exposures = 3;
+  // Similar entries have similar errors in the same trials.
+  constexpr double alike = 1.0005;
   Contenders found;
   if (options.atlas_cameras == 0 || options.method == DesignMethod::factorize ||
       options.method == DesignMethod::search)
@@ -257,9 +261,14 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return errors[a] < errors[b]; });
-  std::map<int, std::size_t> of_exposures;
-  for (const std::size_t i : order)
-    if (of_exposures[codes[i].exposures()]++ < max_of_exposures) found.codes.push_back(codes[i]);
+  std::map<int, std::vector<double>> kept_m;  // by number of exposures
+  for (const std::size_t i : order) {
+    std::vector<double>& its_m = kept_m[codes[i].exposures()];
+    if (its_m.size() >= max_of_exposures || (!its_m.empty() && errors[i] < alike * its_m.back()))
+      continue;
+    its_m.push_back(errors[i]);
+    found.codes.push_back(codes[i]);
+  }
   return found;
 }
 

@@ -129,17 +129,17 @@ inline int best_of_rotations(const std::vector<double>& errors) {
   return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
 }
 
-/// Smooths cyclically within 1/120 of the range, because with few trials the minimum is due to
-/// noise.
+/// Returns means within 1/120 of the range, because with few trials the minimum is due to noise.
 inline std::vector<double> smoothed_over_rotations(const std::vector<double>& errors) {
   const auto count = static_cast<std::ptrdiff_t>(errors.size()), reach = (count + 60) / 120;
-  std::vector<double> sums(errors.size(), 0.0);
+  const auto total = static_cast<double>((reach + 1) * (reach + 1));
+  std::vector<double> means(errors.size(), 0.0);
   for (std::ptrdiff_t i = 0; i < count; ++i)
     for (std::ptrdiff_t k = -reach; k <= reach; ++k)
-      sums[static_cast<std::size_t>(i)] +=
-          static_cast<double>(reach + 1 - std::abs(k)) *
+      means[static_cast<std::size_t>(i)] +=
+          static_cast<double>(reach + 1 - std::abs(k)) / total *
           errors[static_cast<std::size_t>((i + count + k) % count)];
-  return sums;
+  return means;
 }
 
 }  // namespace tofsmith
