@@ -67,8 +67,7 @@ struct Decoder::Plan {
 
   void write(PixelTile& tile, const float* averaged, const NoiseRatios& noise,
              const DecodedView& planes) const;
-  void decode_within(const float* raw, double variance_share, const NoiseRatios& noise,
-                     const RangePart& part, std::size_t at, const DecodedView& planes) const;
+  void decode_within(const PixelToDecode& pixel, const DecodedView& planes) const;
   void write_bins(const PixelTile& tile, std::int32_t* bin) const {
     if (bin_of_row.empty()) {
       std::copy_n(tile.bin, tile.pixels, bin);
@@ -132,9 +131,7 @@ void Decoder::decode_pixels(const RawView& stored, const RangePart* parts,
     return decode_frame(raw, decoded, count, progress,
                         [&](const RawBlock& block, const DecodedView& planes) {
                           for (std::int64_t i = 0; i < block.pixels; ++i)
-                            plan_->decode_within(block.values + i * count, block.variance_share(i),
-                                                 block.noise_of(i), parts[block.first + i],
-                                                 static_cast<std::size_t>(i), planes);
+                            plan_->decode_within(block.pixel(i, count, parts), planes);
                         });
   const bool is_bin_enough = decoded.wants_bins_only();
   for_each_block(raw, count, progress, [&](IndexRange block) {
@@ -177,30 +174,25 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const NoiseRat
   if (planes.bin && !bin_of_row.empty()) write_bins(tile, planes.bin);
 }
 
-void Decoder::Plan::decode_within(const float* raw, double variance_share, const NoiseRatios& noise,
-                                  const RangePart& part, std::size_t at,
-                                  const DecodedView& planes) const {
+void Decoder::Plan::decode_within(const PixelToDecode& pixel, const DecodedView& planes) const {
   std::array<double, max_measurements> electrons, plane, variance_e2;
-  if (!matcher.bins().exact().scale().read(raw, electrons.data())) return store_invalid(at, planes);
+  if (!matcher.bins().exact().scale().read(pixel.raw, electrons.data()))
+    return store_invalid(pixel.at, planes);
   model.project(electrons.data(), plane.data());
-  PixelDecoding pixel;
-  if (const std::optional<Position> best = model.best_within(plane.data(), part)) {
-    pixel.depth_row = best->in_rows(table.samples());
-    pixel.estimate =
-        model.estimate(electrons.data(), plane.data(), *best, variance_e2.data(), variance_share);
+  PixelDecoding decoding;
+  if (const std::optional<Position> best = model.best_within(plane.data(), *pixel.part)) {
+    decoding.depth_row = best->in_rows(table.samples());
+    decoding.estimate = model.estimate(electrons.data(), plane.data(), *best, variance_e2.data(),
+                                       pixel.variance_share);
   }
-  if (pixel.estimate.signal_e_per_s > 0.0) {
+  if (decoding.estimate.signal_e_per_s > 0.0) {
     for (int k = 0; k < model.measurements(); ++k)
-      variance_e2[static_cast<std::size_t>(k)] *= noise.of_lobes;
-    const std::optional<double> confidence = outputs.posterior().confidence(
-        plane.data(), variance_e2.data(), nearest_bin(pixel.depth_row, table.samples()), &part);
-    if (!confidence) return store_pixel(table, options, raw, {}, at, planes);
-    pixel.confidence = *confidence;
-    pixel.residual = outputs.residuals().residual(electrons.data(), pixel.estimate,
-                                                  Position::at(pixel.depth_row),
-                                                  variance_share * noise.of_residual);
+      variance_e2[static_cast<std::size_t>(k)] *= pixel.noise.of_lobes;
+    decoding.set_confidence(outputs.posterior().confidence(
+        plane.data(), variance_e2.data(), nearest_bin(decoding.depth_row, table.samples()),
+        pixel.part));
   }
-  store_pixel(table, options, raw, pixel, at, planes);
+  store_pixel(table, options, outputs.residuals(), electrons.data(), decoding, pixel, planes);
 }
 
 }  // namespace tofsmith

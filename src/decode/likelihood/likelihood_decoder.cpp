@@ -338,8 +338,7 @@ struct LikelihoodDecoder::Plan {
     return std::vector<double>(static_cast<std::size_t>(table.samples()));
   }
   double decode_depth_bin(const float* raw, std::vector<double>& fall) const;
-  void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
-                    const RangePart* part, std::size_t at, const DecodedView& decoded,
+  void decode_pixel(const PixelToDecode& pixel, const DecodedView& decoded,
                     std::vector<double>& fall) const;
 };
 
@@ -372,9 +371,7 @@ void LikelihoodDecoder::decode_pixels(const RawView& raw, const RangePart* parts
       [&](const RawBlock& block, const DecodedView& planes) {
         std::vector<double> fall = plan_->work_space();
         for (std::int64_t i = 0; i < block.pixels; ++i)
-          plan_->decode_pixel(block.values + i * count, block.variance_share(i), block.noise_of(i),
-                              parts ? parts + block.first + i : nullptr,
-                              static_cast<std::size_t>(i), planes, fall);
+          plan_->decode_pixel(block.pixel(i, count, parts), planes, fall);
       },
       block_pixels);
 }
@@ -400,27 +397,19 @@ double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
   return table.in_bins(search.depth_row(found));
 }
 
-void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_share,
-                                           const NoiseRatios& noise, const RangePart* part,
-                                           std::size_t at, const DecodedView& decoded,
+void LikelihoodDecoder::Plan::decode_pixel(const PixelToDecode& pixel, const DecodedView& decoded,
                                            std::vector<double>& fall) const {
   PerMeasurement electrons;
-  if (!read(raw, electrons)) return store_invalid(at, decoded);
-  const LikelihoodPixel pixel = search.model().pixel(electrons.data(), variance_share);
-  const MostLikely found = search.most_likely(pixel, fall, part);
-  PixelDecoding decoding{search.depth_row(found), search.model().estimate(pixel, found.best)};
+  if (!read(pixel.raw, electrons)) return store_invalid(pixel.at, decoded);
+  const LikelihoodPixel likely = search.model().pixel(electrons.data(), pixel.variance_share);
+  const MostLikely found = search.most_likely(likely, fall, pixel.part);
+  PixelDecoding decoding{search.depth_row(found), search.model().estimate(likely, found.best)};
   if (decoding.estimate.signal_e_per_s > 0.0) {
-    LikelihoodPixel of_lobes = pixel;
-    of_lobes.variance_share *= noise.of_lobes;
-    const std::optional<double> confidence = search.confidence(of_lobes, found, part);
-    if (!confidence) return store_pixel(table, options, raw, {}, at, decoded);
-    decoding.confidence = *confidence;
-    if (decoded.residual || decoded.status)
-      decoding.residual =
-          residuals.residual(electrons.data(), decoding.estimate, Position::at(decoding.depth_row),
-                             variance_share * noise.of_residual);
+    LikelihoodPixel of_lobes = likely;
+    of_lobes.variance_share *= pixel.noise.of_lobes;
+    decoding.set_confidence(search.confidence(of_lobes, found, pixel.part));
   }
-  store_pixel(table, options, raw, decoding, at, decoded);
+  store_pixel(table, options, residuals, electrons.data(), decoding, pixel, decoded);
 }
 
 }  // namespace tofsmith

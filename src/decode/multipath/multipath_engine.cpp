@@ -317,13 +317,18 @@ double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits&
   return own > 0.0 ? along / own : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Replaces the residual by that of two returns, and the status inconsistent if they explain the
-/// pixel.
-void MultipathEngine::store_residual(double chi2, float confidence, std::size_t at,
-                                     const DecodedView& decoded) const {
-  if (decoded.residual)
-    decoded.residual[at] = freedom_ > 0 ? static_cast<float>(chi2 / freedom_)
-                                        : std::numeric_limits<float>::quiet_NaN();
+/// Replaces light, confidence and residual by those of two returns, and the status inconsistent if
+/// they explain the pixel.
+void MultipathEngine::replace_light(const PixelGroup& group, const PairFits& fits, int lane,
+                                    std::size_t at, const DecodedView& decoded) const {
+  const double chi2 = fits.chi2[lane];
+  const double lead = std::max(fits.second_best_chi2[lane] - fits.chi2[lane], 0.0f);
+  const auto confidence = static_cast<float>(probability_of(0.5 * lead));
+  PixelDecoding pixel{.confidence = confidence};
+  pixel.estimate.signal_e_per_s = fits.signal_e_per_s[lane];
+  if (decoded.ambient_e_per_s) pixel.estimate.ambient_e_per_s = ambient_e_per_s(group, fits, lane);
+  if (freedom_ > 0) pixel.residual.per_freedom = chi2 / freedom_;
+  store_light(pixel, true, at, decoded);
   if (!decoded.status || decoded.status[at] != PixelStatus::inconsistent) return;
   if (chi2 > consistent_chi2_) return;
   decoded.status[at] = confidence < options_.status_thresholds.min_confidence
@@ -357,13 +362,7 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
   if (decoded.deviation_m) decoded.deviation_m[at] = static_cast<float>(deviation * point_m);
   if (!are_two) return;
   if (decoded.returns) decoded.returns[at] = ReturnStatus::two;
-  if (decoded.signal_e_per_s) decoded.signal_e_per_s[at] = fits.signal_e_per_s[lane];
-  if (decoded.ambient_e_per_s)
-    decoded.ambient_e_per_s[at] = static_cast<float>(ambient_e_per_s(group, fits, lane));
-  const double lead = std::max(fits.second_best_chi2[lane] - fits.chi2[lane], 0.0f);
-  const auto confidence = static_cast<float>(probability_of(0.5 * lead));
-  if (decoded.confidence) decoded.confidence[at] = confidence;
-  store_residual(fits.chi2[lane], confidence, at, decoded);
+  replace_light(group, fits, lane, at, decoded);
   if (decoded.ratio) decoded.ratio[at] = fits.second_e_per_s[lane] / fits.signal_e_per_s[lane];
   if (decoded.delay_m)
     decoded.delay_m[at] = static_cast<float>(

@@ -69,8 +69,8 @@ class MultipathEngine {
   void store(std::int64_t pixel, const PixelGroup& group, const PairFits& fits, int lane,
              const DecodedView& decoded) const;
   double ambient_e_per_s(const PixelGroup& group, const PairFits& fits, int lane) const;
-  void store_residual(double chi2, float confidence, std::size_t at,
-                      const DecodedView& decoded) const;
+  void replace_light(const PixelGroup& group, const PairFits& fits, int lane, std::size_t at,
+                     const DecodedView& decoded) const;
   bool is_single(float chi2) const { return !(chi2 > static_cast<float>(options_.threshold)); }
 
   MultipathEngine(DecodingTable table, const MultipathOptions& options, MultipathKind later,

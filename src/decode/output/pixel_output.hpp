@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "decode/output/pixel_model.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/range_part.hpp"
 
 namespace tofsmith {
 
@@ -19,6 +21,23 @@ struct PixelDecoding {
   PixelEstimate estimate;
   double confidence = 0.0;  ///< probability of the main lobe
   PixelResidual residual = {};
+
+  /// @param probability  none: the pixel has no depth
+  void set_confidence(std::optional<double> probability) {
+    if (probability)
+      confidence = *probability;
+    else
+      *this = {};
+  }
+};
+
+/// A pixel of a frame, for decoders in double precision.
+struct PixelToDecode {
+  const float* raw = nullptr;   ///< (K) raw numbers
+  double variance_share = 1.0;  ///< relative to a single measurement
+  NoiseRatios noise;
+  const RangePart* part = nullptr;  ///< null: anywhere
+  std::size_t at = 0;               ///< index in the planes
 };
 
 /// Writes the values and the status of one pixel.
@@ -26,6 +45,16 @@ struct PixelDecoding {
 /// @param at   index of the pixel in the view
 void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
                  const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded);
+/// As above, after computing the residual if a plane needs it.
+/// @param electrons  without dark electrons (K)
+void store_pixel(const DecodingTable& table, const DecodeOptions& options,
+                 const ResidualModel& residuals, const double* electrons, PixelDecoding decoding,
+                 const PixelToDecode& pixel, const DecodedView& decoded);
+/// Writes the planes that are independent of the depth's position: signal, ambient light,
+/// confidence and residual.
+/// @param has_depth  false: NaN
+void store_light(const PixelDecoding& pixel, bool has_depth, std::size_t at,
+                 const DecodedView& decoded);
 /// Writes a pixel with a NaN or infinite measurement.
 void store_invalid(std::size_t at, const DecodedView& decoded);
 
@@ -59,7 +88,11 @@ struct RawBlock {
 
   /// Returns the variance relative to a single measurement.
   double variance_share(std::int64_t i) const { return averaged ? 1.0 / averaged[i] : 1.0; }
-  NoiseRatios noise_of(std::int64_t i) const { return noise.at(averaged ? averaged[i] : 1.0f); }
+  /// @param parts  of the pixels of the frame, or null
+  PixelToDecode pixel(std::int64_t i, int measurements, const RangePart* parts) const {
+    return {values + i * measurements, variance_share(i), noise.at(averaged ? averaged[i] : 1.0f),
+            parts ? parts + first + i : nullptr, static_cast<std::size_t>(i)};
+  }
 };
 
 /// As for_each_block(), with the raw numbers and planes of a block.

@@ -235,8 +235,7 @@ struct UnwrapDecoder::Plan {
 
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double row_of(const Wraps& wraps) const;
-  void decode_pixel(const float* raw, double variance_share, const NoiseRatios& noise,
-                    const RangePart* part, std::size_t at, const DecodedView& decoded) const;
+  void decode_pixel(const PixelToDecode& pixel, const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
 };
@@ -271,9 +270,7 @@ void UnwrapDecoder::decode_pixels(const RawView& raw, const RangePart* parts,
   decode_frame(MarkedRaw(raw, table().marking).view(), decoded, count, progress,
                [&](const RawBlock& block, const DecodedView& planes) {
                  for (std::int64_t i = 0; i < block.pixels; ++i)
-                   plan_->decode_pixel(block.values + i * count, block.variance_share(i),
-                                       block.noise_of(i), parts ? parts + block.first + i : nullptr,
-                                       static_cast<std::size_t>(i), planes);
+                   plan_->decode_pixel(block.pixel(i, count, parts), planes);
                });
 }
 
@@ -290,36 +287,32 @@ double UnwrapDecoder::Plan::row_of(const Wraps& wraps) const {
   return wrap(wraps.depth * table.samples(), table.samples());
 }
 
-void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share,
-                                       const NoiseRatios& noise, const RangePart* part,
-                                       std::size_t at, const DecodedView& decoded) const {
+void UnwrapDecoder::Plan::decode_pixel(const PixelToDecode& pixel,
+                                       const DecodedView& decoded) const {
   PerMeasurement electrons, variance_e2, plane;
-  if (!scale.read(raw, electrons.data())) return store_invalid(at, decoded);
+  if (!scale.read(pixel.raw, electrons.data())) return store_invalid(pixel.at, decoded);
   const PerFrequency phase = phases_of(electrons);
-  const Wraps wraps = unwrapper.nearest(phase.data(), part);
+  const Wraps wraps = unwrapper.nearest(phase.data(), pixel.part);
   if (!std::isfinite(wraps.distance))
-    return store_pixel(table, options.status_thresholds, raw, {}, at, decoded);
+    return store_pixel(table, options.status_thresholds, pixel.raw, {}, pixel.at, decoded);
 
   model.project(electrons.data(), plane.data());
-  PixelDecoding pixel{.depth_row = row_of(wraps)};
-  pixel.estimate = model.estimate(electrons.data(), plane.data(), Position::at(pixel.depth_row),
-                                  variance_e2.data(), variance_share);
-  if (pixel.estimate.signal_e_per_s > 0.0) {
+  PixelDecoding decoding{.depth_row = row_of(wraps)};
+  decoding.estimate =
+      model.estimate(electrons.data(), plane.data(), Position::at(decoding.depth_row),
+                     variance_e2.data(), pixel.variance_share);
+  if (decoding.estimate.signal_e_per_s > 0.0) {
     PerFrequency share;
     for (std::size_t j = 0; j < weights.size(); ++j) share[j] = weights[j] * table.samples();
-    pixel.estimate.depth_standard_deviation_row = deviation(share, pixel, variance_e2);
+    decoding.estimate.depth_standard_deviation_row = deviation(share, decoding, variance_e2);
     for (int k = 0; k < table.measurements(); ++k)
-      variance_e2[static_cast<std::size_t>(k)] *= noise.of_lobes;
-    const std::optional<double> confidence = posterior.confidence(
-        plane.data(), variance_e2.data(), nearest_bin(pixel.depth_row, table.samples()), part);
-    if (!confidence) return store_pixel(table, options.status_thresholds, raw, {}, at, decoded);
-    pixel.confidence = *confidence;
-    if (decoded.residual || decoded.status)
-      pixel.residual =
-          residuals.residual(electrons.data(), pixel.estimate, Position::at(pixel.depth_row),
-                             variance_share * noise.of_residual);
+      variance_e2[static_cast<std::size_t>(k)] *= pixel.noise.of_lobes;
+    decoding.set_confidence(posterior.confidence(plane.data(), variance_e2.data(),
+                                                 nearest_bin(decoding.depth_row, table.samples()),
+                                                 pixel.part));
   }
-  store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
+  store_pixel(table, options.status_thresholds, residuals, electrons.data(), decoding, pixel,
+              decoded);
 }
 
 /// Returns the standard deviation of sum_f factor_f z_f. An electron in measurement k turns the
