@@ -152,12 +152,12 @@ void Decoder::decode_pixels(const RawView& stored, const RangePart* parts,
 void Decoder::Plan::write(PixelTile& tile, const float* averaged, const NoiseRatios& noise,
                           const DecodedView& planes) const {
   std::array<std::uint8_t, pixels_per_tile> saturated{};
-  if (const SaturationLevels levels(table); levels.has_any() && outputs.needs_saturation(planes))
+  if (const SaturationLevels levels(table); levels.has_any() && planes.status)
     for (int k = 0; k < model.measurements(); ++k)
       for (int i = 0; i < tile.pixels; ++i)
         if (levels.clip(tile.raw[k * pixels_per_tile + i]))
           saturated[static_cast<std::size_t>(i)] = 1;
-  if (outputs.needs_electrons(planes))
+  if (outputs.steps_for(planes).electrons)
     for (int k = 0; k < model.measurements(); ++k)
       for (int i = 0; i < tile.pixels; ++i) {
         float& value = tile.raw[k * pixels_per_tile + i];

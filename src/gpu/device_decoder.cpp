@@ -91,9 +91,10 @@ void DeviceTile::decode(const DecodedView& wanted) {
 
   room(bins_, of_words);
   find_bins(tables_.points, bins_);
+  const OutputSteps steps = outputs_.steps_for(wanted);
   OutputParameters parameters = tables_.outputs;
-  parameters.finds_confidence = outputs_.needs_confidence(wanted) ? 1 : 0;
-  parameters.finds_residual = outputs_.needs_residuals(wanted) ? 1 : 0;
+  parameters.finds_confidence = steps.confidence ? 1 : 0;
+  parameters.finds_residual = steps.residual ? 1 : 0;
   parameters.lobe_noise = raw_.noise().of_lobes;
   parameters.residual_noise = raw_.noise().of_residual;
   std::apply(

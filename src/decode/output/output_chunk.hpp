@@ -47,7 +47,9 @@ struct OutputConstants {
   std::vector<float> ambient_direction;  // see ResidualModel (K)
 };
 
+/// Intermediate results that planes need.
 struct OutputSteps {
+  bool electrons = false;  // in addition to rows of `plane` and `bin`
   bool ambient = false;
   bool noise = false;
   bool confidence = false;

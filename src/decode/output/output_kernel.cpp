@@ -243,27 +243,24 @@ void OutputKernel::fill_limits(const AmbientProjection& projection) {
   constants_.half_quantile = static_cast<float>(residuals.half_quantile());
 }
 
-bool OutputKernel::needs_electrons(const DecodedView& planes) const {
-  return (constants_.sees_ambient &&
-          (planes.ambient_e_per_s || planes.confidence || planes.deviation_m || planes.status)) ||
-         (needs_residuals(planes) && (constants_.sees_ambient || constants_.off_plane_count > 0));
-}
-
-bool OutputKernel::needs_confidence(const DecodedView& planes) const {
-  return planes.confidence || (planes.status && constants_.min_confidence > 0.0f);
-}
-
-void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) const {
+OutputSteps OutputKernel::steps_for(const DecodedView& planes) const {
   const RecordLayout& layout = records_.layout;
   OutputSteps steps;
-  steps.confidence = needs_confidence(planes);
-  steps.residual = needs_residuals(planes);
+  steps.confidence = planes.confidence || (planes.status && constants_.min_confidence > 0.0f);
+  steps.residual = planes.residual || (planes.status && constants_.finds_inconsistent);
   steps.noise = steps.confidence || steps.residual || planes.deviation_m || planes.status;
   steps.ambient = steps.noise || planes.ambient_e_per_s;
+  steps.electrons = (constants_.sees_ambient && steps.ambient) ||
+                    (steps.residual && constants_.off_plane_count > 0);
   steps.fields = steps.confidence || steps.residual ? layout.end_of_bound()
                  : steps.noise                      ? layout.end_of_noise()
                  : steps.ambient                    ? layout.end_of_light()
                                                     : layout.end_of_depth();
+  return steps;
+}
+
+void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) const {
+  const OutputSteps steps = steps_for(planes);
   HWY_DYNAMIC_DISPATCH(write)(records_, constants_, *posterior_, limits_, steps, tile, planes);
 }
 

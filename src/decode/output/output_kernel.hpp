@@ -50,14 +50,7 @@ class OutputKernel {
   const LobePosterior& posterior() const { return *posterior_; }
   const ResidualModel& residuals() const { return *residuals_; }
 
-  /// Return true if planes need these rows in addition to `plane` and `bin`.
-  bool needs_electrons(const DecodedView& planes) const;
-  bool needs_confidence(const DecodedView& planes) const;
-  bool needs_residuals(const DecodedView& planes) const {
-    return planes.residual || (planes.status && constants_.finds_inconsistent);
-  }
-  bool needs_saturation(const DecodedView& planes) const { return planes.status != nullptr; }
-
+  OutputSteps steps_for(const DecodedView& planes) const;
   /// Writes the tile to the planes that are not null, from their first value.
   /// @note thread-safe; allocates nothing
   void write(const MatchedTile& tile, const DecodedView& planes) const;
