@@ -95,10 +95,10 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());
-    const std::unique_ptr<FramePipeline> pipeline = backend.prepare(
-        {.filter = filter ? &filter->filter() : nullptr,
-         .keeps_filtered = corrections.mixed || corrections.limits || planes.view().averaged},
-        raw.height, raw.width);
+    const std::unique_ptr<FramePipeline> pipeline =
+        backend.prepare({.filter = filter ? &filter->filter() : nullptr,
+                         .keeps_filtered = must_keep_filtered(corrections, planes.view().planes())},
+                        raw.height, raw.width);
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
       pipeline->submit(raw.frames[f]);
       decode_frame(*pipeline, corrections, 0, raw.height, planes.view().from(f * pixels), parts[f]);

@@ -221,6 +221,14 @@ std::vector<DecodedPlane> planes_for(const PlaneCorrections& corrections,
   return planes;
 }
 
+bool must_keep_filtered(const PlaneCorrections& corrections,
+                        const std::vector<DecodedPlane>& planes) {
+  return corrections.mixed || corrections.limits ||
+         std::any_of(planes.begin(), planes.end(), [](DecodedPlane plane) {
+           return description_of(plane).use == PlaneUse::of_frames;
+         });
+}
+
 void decode_frame(FramePipeline& pipeline, const PlaneCorrections& corrections, int first_row,
                   int rows, const DecodedView& decoded, const Progress& progress) {
   const auto width = static_cast<std::size_t>(pipeline.width()),

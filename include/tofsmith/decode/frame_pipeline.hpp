@@ -103,19 +103,21 @@ std::unique_ptr<FrameBackend> cpu_backend(std::unique_ptr<const DepthDecoder> de
 
 /// Corrections of decoded planes.
 struct PlaneCorrections {
-  PixelMaps maps;                    ///< of whole frames, in addition to table().correction
-  std::optional<MixedPixels> mixed;  ///< in whole frames; none: off
-  /// For restrict_depths(); with a spatial filter they require FrameSteps::keeps_filtered.
-  std::optional<DepthLimits> limits = {};
+  PixelMaps maps;                          ///< of whole frames, in addition to table().correction
+  std::optional<MixedPixels> mixed;        ///< in whole frames; none: off
+  std::optional<DepthLimits> limits = {};  ///< for restrict_depths()
 };
 
 /// Returns the planes that corrections require, in the order of DecodedPlane.
 std::vector<DecodedPlane> planes_for(const PlaneCorrections& corrections,
                                      const DecodingTable& table);
 
-/// Decodes the ready frame, or rows of it, and corrects its planes. With a spatial filter, the
-/// plane `averaged` requires FrameSteps::keeps_filtered, and a frame with mixed pixels is filtered
-/// again without them.
+/// Returns true if corrections or planes require FrameSteps::keeps_filtered with a spatial filter.
+bool must_keep_filtered(const PlaneCorrections& corrections,
+                        const std::vector<DecodedPlane>& planes);
+
+/// Decodes the ready frame, or rows of it, and corrects its planes. With a spatial filter, a frame
+/// with mixed pixels is filtered again without them.
 /// @param first_row, rows  submitted rows
 /// @param decoded          planes whose first value belongs to the first row; null planes that
 ///                         planes_for() returns are computed in temporary memory

@@ -152,15 +152,15 @@ int sliding_exposures(const DecodeRequest& request, const DecodingTable& table) 
 
 Preparation preparation_of(const DecodeRequest& request, const DecodingTable& table,
                            const std::optional<Filter>& filter) {
-  const bool is_limited = depth_limits(table, request.min_depth_m, request.max_depth_m).has_value();
-  const bool wants_averaged =
-      std::ranges::find(request.outputs, DecodedPlane::averaged) != request.outputs.end();
+  const PlaneCorrections corrections{
+      .mixed = request.mixed,
+      .limits = depth_limits(table, request.min_depth_m, request.max_depth_m)};
   Preparation preparation{
       .steps = {.average = request.average,
                 .averaged = request.averaged,
                 .time_filter = request.time_filter,
                 .filter = filter ? &*filter : nullptr,
-                .keeps_filtered = request.mixed || wants_averaged || is_limited},
+                .keeps_filtered = must_keep_filtered(corrections, request.outputs)},
       .find_mixed = request.mixed.has_value(),
       .undistort = request.undistort,
       .hdr = request.hdr,
