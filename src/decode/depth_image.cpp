@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
@@ -15,13 +16,13 @@ namespace tofsmith {
 
 namespace {
 
-/// ": 0 ok, 1 invalid, ..."
-template <typename Statuses>
-std::string codes_text(const Statuses& all) {
+/// ": 0 ok, 1 invalid, ..."; empty for planes of numbers.
+template <typename Value>
+std::string codes_text(const Image<Value>& /*plane*/) {
   std::string text;
-  for (const auto status : all)
-    text += fmt::format("{}{} {}", text.empty() ? ": " : ", ", static_cast<int>(status),
-                        name_of(status));
+  if constexpr (std::is_enum_v<Value>)
+    for (int code = 0; const std::string_view word : words_of(Value{}))
+      text += fmt::format("{}{} {}", text.empty() ? ": " : ", ", code++, word);
   return text;
 }
 
@@ -29,9 +30,9 @@ std::string codes_text(const Statuses& all) {
 
 std::string help_of(DecodedPlane plane) {
   const PlaneDescription& described = description_of(plane);
-  std::string codes;
-  if (plane == DecodedPlane::status) codes = codes_text(all_pixel_statuses);
-  if (plane == DecodedPlane::returns) codes = codes_text(all_return_statuses);
+  const DepthImage types;
+  const std::string codes = with_plane(
+      plane, [](const auto& values) { return codes_text(values); }, types);
   return fmt::format("{}{}{}", described.help, codes,
                      described.use == PlaneUse::of_returns ? " (two-return and tail only)" : "");
 }

@@ -30,6 +30,8 @@ bool holds_points(const std::filesystem::path& path);
 NpyType type_of(DecodedPlane plane);
 /// Help text of DecodeRequest::outputs, which lists the planes.
 std::string_view help_of_outputs();
+/// Text of the planes that are written by default.
+std::string_view default_of_outputs();
 
 /// Request to decode a recording into files.
 struct DecodeRequest {
@@ -90,9 +92,7 @@ auto fields_of(ConstOrNot<DecodeRequest> auto& r) {
       Field("raw_format", r.raw_format,
             Help{"description (.raw.toml) of a raw file without header; see docs/raw_formats.md"}),
       Field("output", r.output, FieldMark::from_above),
-      Field("outputs", r.outputs, Help{help_of_outputs()},
-            IfAbsent{"depth, signal, ambient, confidence, deviation and status, if the format "
-                     "supports them"}),
+      Field("outputs", r.outputs, Help{help_of_outputs()}, IfAbsent{default_of_outputs()}),
       Field("kind", r.kind,
             Help{"depth to write: radial distance, or z along the optical axis; .ply and .pcd "
                  "contain points"}),

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -65,6 +66,17 @@ std::string_view help_of_outputs() {
                       described.unit.empty() ? "" : fmt::format(" [{}]", described.unit),
                       help_of(described.plane));
     return all;
+  }();
+  return text;
+}
+
+std::string_view default_of_outputs() {
+  static const std::string text = [] {
+    const std::vector<DecodedPlane> planes = usual_planes();
+    std::string all(name_of(planes.front()));
+    for (const DecodedPlane plane : std::span(planes).subspan(1))
+      all += fmt::format("{}{}", plane == planes.back() ? " and " : ", ", name_of(plane));
+    return all + ", if the format supports them";
   }();
   return text;
 }
