@@ -31,6 +31,11 @@ inline const std::vector<DecodedPlane> decoder_planes = [] {
   return planes;
 }();
 
+/// Returns the bit of a plane in a mask of decoder_planes.
+inline unsigned bit_of(DecodedPlane plane) {
+  return 1u << (std::ranges::find(decoder_planes, plane) - decoder_planes.begin());
+}
+
 /// The planes of `decoder_planes` for one row of pixels, initialized to values no decoder writes.
 struct Outputs : DepthImage {
   explicit Outputs(std::size_t pixels) : DepthImage(decoder_planes, 1, static_cast<int>(pixels)) {
