@@ -49,9 +49,12 @@ int main() {
   nlohmann::ordered_json synonyms;
   for (const PlaneSynonym& synonym : plane_synonyms)
     synonyms[synonym.name] = description_of(synonym.plane).member;
-  const nlohmann::ordered_json all = {{"camera", nlohmann::ordered_json::parse(camera_keys_json())},
-                                      {"options", options},
-                                      {"planes", planes},
-                                      {"plane_synonyms", synonyms}};
+  const nlohmann::ordered_json all = {
+      {"camera", nlohmann::ordered_json::parse(camera_keys_json())},
+      {"options", options},
+      {"planes", planes},
+      {"statuses",
+       {{"PixelStatus", words_of(PixelStatus())}, {"ReturnStatus", words_of(ReturnStatus())}}},
+      {"plane_synonyms", synonyms}};
   return std::puts(all.dump().c_str()) < 0 ? 1 : 0;
 }

@@ -16,6 +16,7 @@ HEADER = '''# Made by make_decoded_planes.py of the description of the planes in
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Optional
 
 import numpy as np
@@ -30,6 +31,20 @@ class DecodedPlanes:
     Attributes
     ----------
 '''
+
+
+STATUSES = {
+    "PixelStatus": """\
+Outcome of a pixel; if several apply, the first of invalid, saturated, no_return, low_signal,
+    inconsistent, too_near, too_far, ambiguous. mixed occurs only if mixed pixels are searched for,
+    too_near and too_far only with depth limits.""",
+    "ReturnStatus": "Number of returns in a pixel.",
+}
+
+
+def status_text(name, words):
+    members = "".join(f"    {word} = {code}\n" for code, word in enumerate(words))
+    return f'\n\nclass {name}(IntEnum):\n    """{STATUSES[name]}"""\n\n{members}'
 
 
 def attribute_text(plane):
@@ -52,6 +67,7 @@ def main():
     text = HEADER + "".join(map(attribute_text, planes)) + '    """\n\n'
     for plane in planes:
         text += f"    {plane['member']}: Optional[npt.NDArray[np.{plane['type']}]] = None\n"
+    text += "".join(status_text(*status) for status in described["statuses"].items())
     types = "".join(f"    {plane['member']!r}: np.{plane['type']},\n" for plane in planes)
     words = "".join(f"    {plane['word']!r}: {plane['member']!r},\n" for plane in planes)
     text += f"""

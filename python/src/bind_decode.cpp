@@ -131,13 +131,6 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   return request;
 }
 
-template <typename Statuses>
-std::map<std::string, int> values_by_name(const Statuses& statuses) {
-  std::map<std::string, int> values;
-  for (const auto status : statuses) values.emplace(name_of(status), static_cast<int>(status));
-  return values;
-}
-
 std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
   std::map<std::string, std::int64_t> counts;
   for (const PixelStatus status : all_pixel_statuses)
@@ -286,8 +279,6 @@ void bind_decode(py::module_& module) {
       .def("decode_depth_bins", &decode_depth_bins);
   module.def("decode_methods", [] { return words_of(DecodeMethod{}); });
   module.def("mixed_pixels", [] { return words_of(MixedPixels{}); });
-  module.def("pixel_statuses", [] { return values_by_name(all_pixel_statuses); });
-  module.def("return_statuses", [] { return values_by_name(all_return_statuses); });
 }
 
 }  // namespace tofsmith::python

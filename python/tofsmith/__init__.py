@@ -77,8 +77,9 @@ from ._correlation_calibration import (
 )
 from ._depth_calibration import CalibratedDepth, CalibratedFrequency
 from ._decode import Decoder, decode
+from ._decoded_planes import PixelStatus, ReturnStatus
 from ._decoding_table import DecodingTable
-from ._depth_image import DepthImage, PixelStatus, ReturnStatus
+from ._depth_image import DepthImage
 from ._design import (
     AtlasEntry,
     Candidate,

@@ -6,42 +6,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _check
-from ._decoded_planes import (DecodedPlanes, multipath_planes, plane_synonyms, plane_types,
-                              plane_words)
+from ._decoded_planes import (DecodedPlanes, PixelStatus, multipath_planes, plane_synonyms,
+                              plane_types, plane_words)
 from ._notebook import depth_picture
-
-
-class PixelStatus(IntEnum):
-    """Outcome of a pixel; if several apply, the first of invalid, saturated, no_return, low_signal,
-    inconsistent, too_near, too_far, ambiguous. mixed occurs only if mixed pixels are searched for,
-    too_near and too_far only with depth limits."""
-
-    ok = 0
-    invalid = 1
-    no_return = 2
-    saturated = 3
-    low_signal = 4
-    ambiguous = 5
-    mixed = 6
-    inconsistent = 7
-    too_near = 8
-    too_far = 9
-
-
-class ReturnStatus(IntEnum):
-    """Number of returns in a pixel."""
-
-    none = 0
-    single = 1
-    two = 2
-    unresolved = 3
 
 
 @dataclass(eq=False, repr=False)

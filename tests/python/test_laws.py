@@ -215,13 +215,6 @@ def test_every_method_recovers_depth(method, code):
     assert (image.returns is not None) == (method in ("two-return", "tail"))
 
 
-def test_status_values_equal_those_of_the_library():
-    from tofsmith import _tofsmith
-
-    assert _tofsmith.pixel_statuses() == {s.name: s.value for s in ts.PixelStatus}
-    assert _tofsmith.return_statuses() == {s.name: s.value for s in ts.ReturnStatus}
-
-
 def test_design_keeps_baselines_and_reports_results(camera):
     quick = {"random_starts": 2, "max_iterations": 2, "refined": 2, "structured_starts": False}
     later = {"ratio": [0.2, 0.4], "delay_m": [0.5, 3], "weight": 0.2}

@@ -57,9 +57,6 @@ enum class ReturnStatus : std::uint8_t {
                    ///< possibly biased
 };
 
-inline constexpr std::array all_return_statuses = {ReturnStatus::none, ReturnStatus::single,
-                                                   ReturnStatus::two, ReturnStatus::unresolved};
-
 constexpr std::array<std::string_view, 4> words_of(ReturnStatus /*any*/) {
   return {"none", "single", "two", "unresolved"};
 }
