@@ -155,7 +155,7 @@ OutputParameters parameters_of(const Decoder& decoder, const OutputKernel& kerne
 
 std::string options_of(const RecordLayout& layout, bool has_doubles) {
   std::string options = has_doubles ? "-D HAS_DOUBLES" : "";
-  const auto define = [&](const char* name, int value) {
+  const auto define = [&](std::string_view name, int value) {
     options += fmt::format(" -D {}={}", name, value);
   };
   define("MEASUREMENTS", layout.measurements);
@@ -179,12 +179,8 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
   define("CHORD_FIELDS", ChordLayout::fields);
   define("CHORD_DEPTH_NOISE", ChordLayout::depth_noise);
   define("CHORD_AMBIENT", ChordLayout::ambient);
-  define("STATUS_OK", static_cast<int>(PixelStatus::ok));
-  define("STATUS_INVALID", static_cast<int>(PixelStatus::invalid));
-  define("STATUS_NO_RETURN", static_cast<int>(PixelStatus::no_return));
-  define("STATUS_SATURATED", static_cast<int>(PixelStatus::saturated));
-  define("STATUS_LOW_SIGNAL", static_cast<int>(PixelStatus::low_signal));
-  define("STATUS_INCONSISTENT", static_cast<int>(PixelStatus::inconsistent));
+  for (const PixelStatus status : all_pixel_statuses)
+    define(fmt::format("STATUS_{}", name_of(status)), static_cast<int>(status));
   define("LIMIT_VARIANCE", LimitLayout::variance);
   define("LIMIT_ERROR", LimitLayout::error);
   define("LIMIT_ROOT", LimitLayout::root);

@@ -302,12 +302,12 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   }
   if (status) {
     const float noise = variance_of(signal, noisy_ambient, record + RECORD_SIGNAL_NOISE) * share;
-    uchar value = is_inconsistent ? STATUS_INCONSISTENT : STATUS_OK;
-    if (signal * signal < p.low_signal_sigma2 * noise) value = STATUS_LOW_SIGNAL;
-    if (!has_depth) value = STATUS_NO_RETURN;
+    uchar value = is_inconsistent ? STATUS_inconsistent : STATUS_ok;
+    if (signal * signal < p.low_signal_sigma2 * noise) value = STATUS_low_signal;
+    if (!has_depth) value = STATUS_no_return;
     for (int k = 0; k < MEASUREMENTS; ++k)
-      if (raw[k] >= p.highest || raw[k] <= p.lowest) value = STATUS_SATURATED;
-    if (bin < 0) value = STATUS_INVALID;
+      if (raw[k] >= p.highest || raw[k] <= p.lowest) value = STATUS_saturated;
+    if (bin < 0) value = STATUS_invalid;
     status[pixel] = value;
   }
 }
