@@ -73,7 +73,8 @@ class CMakeBuild(build_ext):
         run_telling_progress(["cmake", "--build", build, "--target", "tofsmith_python", "tofsmith_cli", *jobs])
         # Its file name contains the Python version that CMake built it for.
         built = next((build / "python" / "tofsmith").glob("_tofsmith*.so"))
-        made = (built.name, "_camera_fields.py", "_decoded_planes.py", "_option_fields.py")
+        made = (built.name, "_camera_fields.py", "_decoded_planes.py", "_option_fields.py",
+                "_result_fields.py")
         files = {**{built.with_name(name): target.with_name(name) for name in made},
                  build / "apps" / "tofsmith": target.parent / "_prefix" / "bin" / "tofsmith"}
         lab_page = root / "build-lab" / "lab.html"  # of scripts/lab.sh

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/statistics.hpp"
 
-// The description of options structs as JSON, from which other languages derive theirs.
+// The descriptions of options and results as JSON, from which other languages derive theirs.
 namespace tofsmith {
 
 namespace detail {
@@ -24,6 +25,8 @@ std::string type_of_field() {
     return type_of_field<typename Value::value_type>() + "[]";
   else if constexpr (HasFields<Value>)
     return "table";
+  else if constexpr (std::is_same_v<Value, Estimate>)
+    return "estimate";
   else if constexpr (std::is_same_v<Value, bool>)
     return "boolean";
   else if constexpr (std::is_integral_v<Value>)
@@ -89,6 +92,28 @@ nlohmann::ordered_json fields_list(const Struct& its = {}) {
                                         {"only_with", field.only_with},
                                         {"if_absent", field.if_absent}};
     if constexpr (HasFields<Single>) described["fields"] = fields_list<Single>();
+    list.push_back(std::move(described));
+  });
+  return list;
+}
+
+/// Lists all fields of a result, with the fields of nested structs.
+template <typename Struct>
+nlohmann::ordered_json result_fields(const Struct& its = {}) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    nlohmann::ordered_json described = {{"name", field.name},
+                                        {"type", detail::type_of_field<Value>()},
+                                        {"optional", is_optional<Value>},
+                                        {"help", field.help},
+                                        {"unit", unit_of_key(field.name)}};
+    if constexpr (std::is_same_v<SingleValue<Value>, Estimate>) {
+      described["is_pair"] = field.is(FieldMark::as_object);
+      described["error"] = field.is(FieldMark::without_error) ? "" : error_name(field.name);
+    }
+    if constexpr (HasFields<SingleValue<Value>>)
+      described["fields"] = result_fields<SingleValue<Value>>();
     list.push_back(std::move(described));
   });
   return list;

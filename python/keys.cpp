@@ -1,23 +1,83 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prints the descriptions of a camera's keys, of all options structs and of decoded planes, from
-// which make_camera_fields.py, make_option_fields.py and make_decoded_planes.py make Python
-// classes.
+// Prints the descriptions of a camera's keys, of options, results and decoded planes, from which
+// make_camera_fields.py, make_option_fields.py, make_result_fields.py and make_decoded_planes.py
+// make Python classes.
 #include <cstdio>
 
 #include "field_list.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
+#include "tofsmith/camera/generator_report.hpp"
+#include "tofsmith/design/candidate.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/scene_toml.hpp"
+#include "tofsmith/simulate/interference_error.hpp"
+#include "tofsmith/simulate/motion_error.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 #include "tofsmith/waveforms/upload_script.hpp"
 
+namespace {
+
+using namespace tofsmith;
+
+/// Description of a Python class with the fields of a struct.
+template <typename Result>
+nlohmann::ordered_json result(const char* name, const char* help) {
+  return {{"name", name}, {"help", help}, {"fields", result_fields<Result>()}};
+}
+
+/// Description of a Python class with one array per field.
+template <typename Row>
+nlohmann::ordered_json columns(const char* name, const char* help) {
+  const nlohmann::ordered_json rows = {
+      {"name", "rows"}, {"type", "table[]"}, {"fields", result_fields<Row>()}};
+  return {{"name", name}, {"help", help}, {"fields", nlohmann::ordered_json::array({rows})}};
+}
+
+nlohmann::ordered_json results() {
+  return {
+      result<DepthErrorMean>("DepthErrorMean",
+                             "Means of the depth error over all operating points"),
+      result<DepthErrorReport>(
+          "DepthErrorReport",
+          "Depth error of a code on a camera. Arrays have one entry per operating point, (P,), "
+          "ordered by signal"),
+      result<RobustnessReport>(
+          "RobustnessReport",
+          "Depth error if the camera deviates from its description: geometric means over its "
+          "operating points"),
+      result<WrongShares>(
+          "WrongShares",
+          "Shares of trials with wrong depths. A depth is wrong if it deviates from all true "
+          "depths by more than three times its `deviation_m`"),
+      result<MotionErrors>("MotionErrors",
+                           "Depth errors of trials whose exposures saw different depths"),
+      result<MotionReport>("MotionReport",
+                           "Effect of motion while the exposures of a frame follow one another"),
+      result<InterferenceReport>(
+          "InterferenceReport",
+          "Effect of the light of other cameras, as in the camera's `operating.interference`"),
+      columns<MultipathCell>("MultipathCells",
+                             "Circular error of the direct depth; all arrays have the same shape"),
+      result<GeneratorReport>("GeneratorReport",
+                              "Nominal and actual properties of one waveform on its generator"),
+      result<MeasurementReport>(
+          "MeasurementReport",
+          "One measurement of a designed code and its comparison with the target, if any. Arrays "
+          "(iterations,) belong to the best random start"),
+      result<SearchRecord>("SearchRecord", "Progress of a code search; arrays (steps,)"),
+      result<ExposureOrder>("ExposureOrder",
+                            "Order of exposures that a design chose for moving surfaces"),
+  };
+}
+
+}  // namespace
+
 int main() {
-  using namespace tofsmith;
   const nlohmann::ordered_json options = {
       {"CaptureOptions", fields_list<CaptureOptions>()},
       {"DecodeOptions", fields_list<DecodeOptions>()},
@@ -52,6 +112,7 @@ int main() {
   const nlohmann::ordered_json all = {
       {"camera", nlohmann::ordered_json::parse(camera_keys_json())},
       {"options", options},
+      {"results", results()},
       {"planes", planes},
       {"statuses",
        {{"PixelStatus", words_of(PixelStatus())}, {"ReturnStatus", words_of(ReturnStatus())}}},

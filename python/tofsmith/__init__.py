@@ -24,7 +24,7 @@ from types import ModuleType as _ModuleType
 
 from . import _components  # isort: skip
 from . import _check, _tofsmith
-from ._actual_waveforms import GeneratorReport, actual_waveforms, arm_output, generator_report
+from ._actual_waveforms import actual_waveforms, arm_output, generator_report
 from ._camera import Camera, built_in_camera_names, camera_keys
 from ._camera_calibration import (
     CalibratedStrayLight,
@@ -84,12 +84,9 @@ from ._design import (
     AtlasEntry,
     Candidate,
     DesignResult,
-    ExposureOrder,
     RequirementMap,
     Requirements,
     Sufficiency,
-    MeasurementReport,
-    SearchRecord,
     atlas,
     design,
     find_requirements,
@@ -148,18 +145,7 @@ from ._multipath import (
 )
 from ._recordings import DecodedRecording, DecodedStream
 from ._report_pages import write_evaluation_report, write_report
-from ._reports import (
-    DepthErrorMean,
-    DepthErrorReport,
-    Estimate,
-    GeneratorLoss,
-    InterferenceReport,
-    MotionErrors,
-    MotionReport,
-    RobustnessReport,
-    OperatingMultipathReport,
-    WrongShares,
-)
+from ._reports import DepthErrorReport, GeneratorLoss, OperatingMultipathReport
 from ._response_calibration import (
     CalibratedResponse,
     ParametricResponse,
@@ -167,6 +153,19 @@ from ._response_calibration import (
     calibrate_impulse_response,
     read_response_record,
 )
+from ._result_fields import (
+    DepthErrorMean,
+    ExposureOrder,
+    GeneratorReport,
+    InterferenceReport,
+    MeasurementReport,
+    MotionErrors,
+    MotionReport,
+    RobustnessReport,
+    SearchRecord,
+    WrongShares,
+)
+from ._results import Estimate
 from ._scene import (
     Scene,
     StagedCapture,

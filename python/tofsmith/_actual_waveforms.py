@@ -4,50 +4,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Optional
 
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray
 from ._code import CodeLike, handles_of
+from ._result_fields import GeneratorReport
 from ._waveform import Waveform
-
-
-@dataclass(frozen=True)
-class GeneratorReport:
-    """Nominal and actual properties of one waveform on its generator.
-
-    Attributes
-    ----------
-    arm : {"light", "sensor"}
-    index : int
-        Exposure (light) or tap value (sensor), from 0.
-    points_per_period : int
-    clock_hz : float
-        Points per second.
-    duty_nominal, duty_actual, mean_nominal, mean_actual, peak_nominal, peak_actual : float
-    edges_nominal, edges_actual : int
-    rms_difference : float
-        Root mean square over the period of actual minus nominal waveform.
-    largest_edge_move_s : float, optional
-        Largest displacement of a switching time [s]; None for a waveform that is not binary.
-    """
-
-    arm: str
-    index: int
-    points_per_period: int
-    clock_hz: float
-    duty_nominal: float
-    duty_actual: float
-    mean_nominal: float
-    mean_actual: float
-    peak_nominal: float
-    peak_actual: float
-    edges_nominal: int
-    edges_actual: int
-    rms_difference: float
-    largest_edge_move_s: Optional[float]
 
 
 def generator_report(code: CodeLike, camera: CameraLike) -> list[GeneratorReport]:

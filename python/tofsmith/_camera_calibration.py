@@ -18,7 +18,7 @@ from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable, table_of
 from ._option_fields import PhotonTransferOptions
 from ._options import takes
-from ._reports import Estimate, with_estimates
+from ._results import Estimate, WithReport, calibrated
 
 
 @dataclass(frozen=True)
@@ -127,13 +127,11 @@ def photon_transfer(
     dark_frames = None if dark is None else _check.frames(dark, "dark")
     handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, code_handle,
                                        dict(options))
-    fields = with_estimates(handle.fields())
-    fields["points"] = [PhotonTransferPoint(**with_estimates(point)) for point in fields["points"]]
-    return PhotonTransfer(**fields, _handle=handle)
+    return calibrated(PhotonTransfer, handle)
 
 
 @dataclass(frozen=True)
-class CalibratedStrayLight:
+class CalibratedStrayLight(WithReport):
     """Result of calibrate_stray_light().
 
     Attributes
@@ -162,14 +160,6 @@ class CalibratedStrayLight:
     def write(self, path: Path, *, overwrite: bool = False) -> None:
         """Writes the kernel (.npy .npz .exr .pfm), for `tofsmith decode --stray-light`."""
         self._handle.write(_check.path(path), bool(overwrite))
-
-    def write_report(
-        self, path: Path, *, source: str = "frames", overwrite: bool = False
-    ) -> None:
-        """Writes the page of `tofsmith calibrate stray-light --report` (.html)."""
-        self._handle.write_report(
-            _check.path(path), _check.text(source, "source"), bool(overwrite)
-        )
 
 
 def calibrate_stray_light(
@@ -202,9 +192,7 @@ def calibrate_stray_light(
     handle = _tofsmith.calibrate_stray_light(
         _check.frames(frames, "frames"), dark_frames, camera_of(camera)._handle,
         _check.progress(progress))
-    fields = with_estimates(handle.fields())
-    fields["share"] = [Estimate(*share) for share in fields["share"]]
-    return CalibratedStrayLight(**fields, _handle=handle)
+    return calibrated(CalibratedStrayLight, handle)
 
 
 def remove_stray_light(
@@ -257,7 +245,7 @@ class SensorDrift:
 
 
 @dataclass(frozen=True)
-class TemperatureDrift:
+class TemperatureDrift(WithReport):
     """Drift of depth and signal with temperature.
 
     Attributes
@@ -326,14 +314,6 @@ class TemperatureDrift:
         return Camera._of(
             self._handle.camera(camera_of(camera)._handle, reference, sensor_reference))
 
-    def write_report(
-        self, path: Path, *, source: str = "frames", overwrite: bool = False
-    ) -> None:
-        """Writes the page of `tofsmith calibrate temperature --report` (.html)."""
-        self._handle.write_report(
-            _check.path(path), _check.text(source, "source"), bool(overwrite)
-        )
-
 
 def calibrate_temperature(
     frames: npt.ArrayLike,
@@ -382,10 +362,7 @@ def calibrate_temperature(
     handle = _tofsmith.calibrate_temperature(
         _check.frames(frames, "frames"), degrees, sensor_degrees, code_of(code, camera)._handle,
         camera._handle, _check.progress(progress))
-    fields = with_estimates(handle.fields())
-    if fields["sensor"] is not None:
-        fields["sensor"] = SensorDrift(**with_estimates(fields["sensor"]))
-    return TemperatureDrift(**fields, _handle=handle)
+    return calibrated(TemperatureDrift, handle)
 
 
 def _degrees(temperatures: npt.ArrayLike, name: str) -> list[float]:

@@ -19,7 +19,7 @@ from ._check import FloatArray, Path, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._depth_calibration import CalibratedDepth, calibrate_depth
-from ._reports import Estimate, with_estimates
+from ._results import Estimate, calibrated
 
 
 @dataclass(frozen=True)
@@ -311,10 +311,7 @@ def calibrate_correlation(
         options,
         _check.progress(progress),
     )
-    fields = with_estimates(handle.fields())
-    fields["dead"] = DeadPixels(**fields["dead"])
-    fields["tap_mismatch"] = [Estimate(*pair) for pair in fields["tap_mismatch"]]
-    return CalibratedCorrelation(**fields, _handle=handle)
+    return calibrated(CalibratedCorrelation, handle)
 
 
 @dataclass(frozen=True)
@@ -409,7 +406,7 @@ def fit_ideal_codes(
         ideal = camera.replace(light={"peak_factor": 1e6})
         handles = [code_of(code, ideal)._handle for code in codes]
     fits = _tofsmith.fit_ideal_codes(found._handle, camera._handle, handles)
-    return [_fit(handle, found) for handle in fits]
+    return [calibrated(IdealCodeFit, handle, _found=found._handle) for handle in fits]
 
 
 def write_correlation_report(
@@ -443,10 +440,3 @@ def write_correlation_report(
     _tofsmith.write_correlation_report(
         _check.path(path), found._handle, handles, _check.text(source, "source"), bool(overwrite)
     )
-
-
-def _fit(handle: _tofsmith.IdealCodeFit, found: CalibratedCorrelation) -> IdealCodeFit:
-    fields = with_estimates(handle.fields())
-    fields["response"] = ImpulseResponse(**fields["response"])
-    fields["harmonics"] = [HarmonicRatio(**with_estimates(h)) for h in fields["harmonics"]]
-    return IdealCodeFit(**fields, _handle=handle, _found=found._handle)

@@ -17,7 +17,7 @@ from ._check import Path, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._files import read_raw
-from ._reports import Estimate, with_estimates
+from ._results import Estimate, WithReport, result_of
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class CalibratedFrequency:
 
 
 @dataclass(frozen=True)
-class CalibratedDepth:
+class CalibratedDepth(WithReport):
     """Result of calibrate_correlation() with reference depth.
 
     Attributes
@@ -110,15 +110,6 @@ class CalibratedDepth:
         """Writes the table with its correction (.npz), for `tofsmith decode --code`."""
         self._handle.write_table(_check.path(path), bool(overwrite))
 
-    def write_report(
-        self, path: Path, *, source: str = "frames", overwrite: bool = False
-    ) -> None:
-        """Writes the page of `tofsmith calibrate correlation --reference --report` (.html): errors
-        over depth and image, before and after the correction, and its terms."""
-        self._handle.write_report(
-            _check.path(path), _check.text(source, "source"), bool(overwrite)
-        )
-
 
 def calibrate_depth(
     frames: Union[Path, npt.ArrayLike],
@@ -156,10 +147,5 @@ def calibrate_depth(
         _check.progress(progress),
     )
     fields = handle.fields()
-    for its in fields["frequencies"]:
-        its["harmonics"] = {
-            n: (Estimate(*a), Estimate(*b)) for n, (a, b) in its["harmonics"].items()}
-    fields["frequencies"] = [
-        CalibratedFrequency(**with_estimates(its)) for its in fields["frequencies"]]
-    fields["terms"] = {name: Estimate(*value) for name, value in fields["terms"]}
-    return CalibratedDepth(**fields, _handle=handle)
+    return result_of(
+        CalibratedDepth, {**fields, "terms": dict(fields["terms"]), "_handle": handle})

@@ -17,61 +17,15 @@ from ._check import FloatArray, Path, Progress
 from ._code import CodeSet
 from ._option_fields import DesignOptions, RequirementOptions
 from ._options import takes
-from ._reports import (
-    DepthErrorReport,
+from ._reports import DepthErrorReport, OperatingMultipathReport
+from ._result_fields import (
+    ExposureOrder,
     InterferenceReport,
-    OperatingMultipathReport,
+    MeasurementReport,
     RobustnessReport,
-    interference_report_of,
-    report_of,
+    SearchRecord,
 )
-
-
-@dataclass(frozen=True)
-class MeasurementReport:
-    """One measurement of a designed code and its comparison with the target, if any. Arrays
-    (iterations,) belong to the best random start."""
-
-    residual_rms: float
-    smallest_residual_rms: float
-    demodulation_duty: float
-    modulation_duty: float
-    peak: float
-    edges: int
-    start: str
-    objective: FloatArray
-    relaxed_residual_rms: FloatArray
-    playable_residual_rms: FloatArray
-
-
-@dataclass(frozen=True)
-class SearchRecord:
-    """Progress of a code search: `error_m` (steps,) over `work` (steps,). `proved` is true if no
-    other code in the search space is better; `account` is a summary of the search space."""
-
-    work_unit: str
-    error_name: str
-    work: FloatArray
-    error_m: FloatArray
-    proved: bool
-    account: str
-
-
-@dataclass(frozen=True)
-class ExposureOrder:
-    """Order of exposures that a design chose for moving surfaces.
-
-    Attributes
-    ----------
-    order : list of int
-        For each exposure, its former number, from 0.
-    rms_bias_m, given_rms_bias_m : float
-        Root mean square depth error due to motion, in this order and in the former order.
-    """
-
-    order: list[int]
-    rms_bias_m: float
-    given_rms_bias_m: float
+from ._results import result_of
 
 
 @dataclass(frozen=True)
@@ -203,20 +157,6 @@ class DesignResult:
 Target = Union[CodeSet, Path, npt.NDArray[Any]]
 
 
-def _candidate(values: dict[str, Any], camera: Camera) -> Candidate:
-    values["code"] = CodeSet._of(values["code"])
-    values["error"] = report_of(values["error"], camera)
-    values["per_measurement"] = [MeasurementReport(**m) for m in values["per_measurement"]]
-    kinds: dict[str, Any] = {"search": SearchRecord, "robustness": RobustnessReport,
-                             "multipath": OperatingMultipathReport, "exposure_order": ExposureOrder}
-    for name, kind in kinds.items():
-        if values[name] is not None:
-            values[name] = kind(**values[name])
-    if values["interference"] is not None:
-        values["interference"] = interference_report_of(values["interference"])
-    return Candidate(**values)
-
-
 def target_of(target: Target, camera: Camera, normalize: bool) -> _tofsmith.TargetSet:
     if isinstance(target, np.ndarray):
         table = _check.finite_array(target, "target", "(N, K)")
@@ -276,8 +216,9 @@ def design(
     given: dict[str, Any] = {**options, "effort": effort}
     targets = None if target is None else target_of(target, camera, normalize)
     result = _tofsmith.design(camera._handle, given, targets, _check.progress(progress))
-    result["candidates"] = [_candidate(c, camera) for c in result["candidates"]]
-    return DesignResult(**result)
+    for candidate in result["candidates"]:
+        candidate["error"]["kind"] = camera.operating.error
+    return result_of(DesignResult, result)
 
 
 @dataclass(frozen=True)
@@ -314,11 +255,7 @@ class AtlasEntry:
 def atlas() -> list[AtlasEntry]:
     """Returns the atlas of best codes, as listed by `tofsmith atlas`. `design(camera, effort=0)`
     selects the best code of the most similar cameras in the atlas."""
-    def entry_of(fields: dict[str, Any]) -> AtlasEntry:
-        code = CodeSet._of(fields.pop("code"))
-        return AtlasEntry(code=code, **fields)
-
-    return [entry_of(dict(fields)) for fields in _tofsmith.atlas()]
+    return [result_of(AtlasEntry, fields) for fields in _tofsmith.atlas()]
 
 
 @dataclass(frozen=True)
@@ -427,11 +364,5 @@ def find_requirements(
     """
     given: dict[str, Any] = {**options, "error_m": error_m}
     handle = camera_of(camera)._handle
-    found = _tofsmith.find_requirements(handle, given, _check.progress(progress))
-    found["code"] = CodeSet._of(found["code"])
-    for s in found["varied"]:
-        s["code"] = CodeSet._of(s["code"])
-        s["camera"] = None if s["camera"] is None else Camera._of(s["camera"])
-    found["varied"] = [Sufficiency(**s) for s in found["varied"]]
-    found["map"] = None if found["map"] is None else RequirementMap(**found["map"])
-    return Requirements(**found)
+    return result_of(
+        Requirements, _tofsmith.find_requirements(handle, given, _check.progress(progress)))

@@ -14,17 +14,9 @@ from ._decoding_table import DecodingTable
 from ._light import light_of
 from ._option_fields import EvaluateOptions, RobustnessOptions
 from ._options import takes
-from ._reports import (
-    DepthErrorReport,
-    GeneratorLoss,
-    InterferenceReport,
-    MotionErrors,
-    MotionReport,
-    RobustnessReport,
-    WrongShares,
-    interference_report_of,
-    report_of,
-)
+from ._reports import DepthErrorReport, GeneratorLoss, report_of
+from ._result_fields import InterferenceReport, MotionReport, RobustnessReport
+from ._results import result_of
 
 
 class _Bound:
@@ -230,7 +222,7 @@ def robustness(
     """
     values = _tofsmith.robustness(
         *handles_of(code, camera), dict(options), _check.progress(progress))
-    return RobustnessReport(**values)
+    return result_of(RobustnessReport, values)
 
 
 @takes(EvaluateOptions)
@@ -258,10 +250,7 @@ def motion_error(
     values = _tofsmith.motion_error(
         *handles_of(code, camera), _check.number(velocity_m_per_s, "velocity_m_per_s"),
         dict(options), _check.progress(progress))
-    for name in ("surface", "edge"):
-        shares = WrongShares(**values[name].pop("shares"))
-        values[name] = MotionErrors(shares=shares, **values[name])
-    return MotionReport(**values)
+    return result_of(MotionReport, values)
 
 
 @takes(EvaluateOptions)
@@ -285,4 +274,4 @@ def interference_error(
     """
     values = _tofsmith.interference_error(
         *handles_of(code, camera), dict(options), _check.progress(progress))
-    return interference_report_of(values)
+    return result_of(InterferenceReport, values)

@@ -14,6 +14,7 @@ from ._check import FloatArray, Progress
 from ._design import Target, target_of
 from ._option_fields import FactorizeOptions
 from ._options import takes
+from ._results import result_of
 from ._waveform import Waveform
 
 
@@ -144,8 +145,7 @@ def factorize(
     results = []
     for index in chosen:
         found = _tofsmith.factorize(targets, index, camera._handle, given, callback)
-        found["pairs"] = [_pair(values) for values in found["pairs"]]
-        results.append(Factorization(**found))
+        results.append(result_of(Factorization, found))
     return results
 
 
@@ -182,16 +182,8 @@ def alternate(
     values = _tofsmith.alternate(
         targets, _measurement(measurement, targets), camera._handle,
         _check.whole(start, "start", 0), weight, given)
-    for name in ("relaxed", "playable"):
-        values[name] = tuple(Waveform._of(handle) for handle in values[name])
-    return Alternation(**values)
+    return result_of(Alternation, values)
 
 
 def _measurement(index: int, targets: _tofsmith.TargetSet) -> int:
     return _check.whole(index, "measurement", 0, _tofsmith.number_of_targets(targets) - 1)
-
-
-def _pair(values: dict[str, Any]) -> FactorizedPair:
-    for arm in ("modulation", "demodulation"):
-        values[arm] = Waveform._of(values[arm])
-    return FactorizedPair(**values)

@@ -10,7 +10,7 @@ from typing import Any, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from . import _check, _tofsmith
+from . import _check, _result_fields, _tofsmith
 from ._camera import CameraLike
 from ._check import FloatArray, Progress
 from ._code import CodeLike, handles_of
@@ -20,37 +20,8 @@ from ._options import takes
 
 
 @dataclass(frozen=True)
-class MultipathCells:
-    """Circular error of the direct depth [m]; all arrays have the same shape.
-
-    Attributes
-    ----------
-    ratio, delay_m : ndarray
-        Ratio and delay of the second return, or ratio and mean delay of the tail.
-    single_bias_m, single_error_m, single_error_se_m : ndarray
-        Mean error, mean absolute error and its standard error of single-path decoding (zncc).
-    bias_m, error_m, error_se_m : ndarray
-        The same for two-return (tail) decoding; NaN if the code does not support it.
-    two_share, unresolved_share : ndarray
-        Shares of pixels with two detected returns, and with unresolved multipath.
-    cramer_rao_mae_m : ndarray
-        Bound from MultipathBound.
-    law_m : ndarray
-        ratio delay_m / (1 + ratio): approximate bias of single-path decoding.
-    """
-
-    ratio: FloatArray
-    delay_m: FloatArray
-    single_bias_m: FloatArray
-    single_error_m: FloatArray
-    single_error_se_m: FloatArray
-    bias_m: FloatArray
-    error_m: FloatArray
-    error_se_m: FloatArray
-    two_share: FloatArray
-    unresolved_share: FloatArray
-    cramer_rao_mae_m: FloatArray
-    law_m: FloatArray
+class MultipathCells(_result_fields.MultipathCells):
+    __doc__ = _result_fields.MultipathCells.__doc__
 
     def gain(self) -> FloatArray:
         """single_error_m / error_m."""

@@ -16,7 +16,7 @@ from ._camera_fields import ImpulseResponse
 from ._check import FloatArray, Path
 from ._option_fields import ResponseRecordOptions
 from ._options import takes
-from ._reports import Estimate, with_estimates
+from ._results import Estimate, calibrated
 
 
 @dataclass(frozen=True)
@@ -240,9 +240,4 @@ def calibrate_impulse_response(
     handle = _tofsmith.calibrate_impulse_response(
         values, step_s, start_s, bool(record.counts), record.notes, camera._handle, excitation
     )
-    fields = with_estimates(handle.fields())
-    for each in (fields, *fields["fits"]):
-        each["response"] = ImpulseResponse(**each["response"])
-    fields["fits"] = [ParametricResponse(**with_estimates(fit)) for fit in fields["fits"]]
-    fields["record"] = ResponseRecord(**fields["record"])
-    return CalibratedResponse(**fields, _handle=handle)
+    return calibrated(CalibratedResponse, handle)

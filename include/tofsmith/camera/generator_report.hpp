@@ -39,26 +39,31 @@ constexpr std::string_view name_of(Arm arm) { return arm == Arm::light ? "light"
 /// Nominal and actual properties of one waveform on its generator.
 struct GeneratorReport {
   Arm arm = Arm::light;
-  int index = 0;              ///< exposure (light) or tap value (sensor), from 0
+  int index = 0;
   int points_per_period = 0;  ///< n
   double clock_hz = 0.0;      ///< n f0
   double duty_nominal = 0.0, duty_actual = 0.0;
   double mean_nominal = 0.0, mean_actual = 0.0;  ///< relative to average power, or gain
   double peak_nominal = 0.0, peak_actual = 0.0;
   int edges_nominal = 0, edges_actual = 0;
-  double rms_difference = 0.0;  ///< over one period, in units of the waveform
-  /// Only for binary waveforms.
+  double rms_difference = 0.0;
   std::optional<double> largest_edge_move_s;
 };
 auto fields_of(ConstOrNot<GeneratorReport> auto& r) {
-  return std::tuple(Field("arm", r.arm), Field("index", r.index),
-                    Field("points_per_period", r.points_per_period), Field("clock_hz", r.clock_hz),
+  return std::tuple(Field("arm", r.arm, Help{"arm of the waveform: light or sensor"}),
+                    Field("index", r.index, Help{"exposure (light) or tap value (sensor), from 0"}),
+                    Field("points_per_period", r.points_per_period),
+                    Field("clock_hz", r.clock_hz, Help{"points per second"}),
                     Field("duty_nominal", r.duty_nominal), Field("duty_actual", r.duty_actual),
                     Field("mean_nominal", r.mean_nominal), Field("mean_actual", r.mean_actual),
                     Field("peak_nominal", r.peak_nominal), Field("peak_actual", r.peak_actual),
                     Field("edges_nominal", r.edges_nominal), Field("edges_actual", r.edges_actual),
-                    Field("rms_difference", r.rms_difference),
-                    Field("largest_edge_move_s", r.largest_edge_move_s));
+                    Field("rms_difference", r.rms_difference,
+                          Help{"root mean square over the period of actual minus nominal "
+                               "waveform"}),
+                    Field("largest_edge_move_s", r.largest_edge_move_s,
+                          Help{"largest displacement of a switching time; none for a waveform that "
+                               "is not binary"}));
 }
 
 /// Returns one report per waveform of a generator, light first. Impulse responses are not included.

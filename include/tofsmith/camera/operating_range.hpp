@@ -15,14 +15,15 @@ namespace tofsmith {
 
 /// Light levels, as photo-electron rates of a fully open sensor.
 struct OperatingPoint {
-  double signal_e_per_s = 0.0;   ///< S, modulated light
-  double ambient_e_per_s = 0.0;  ///< A, all other light
+  double signal_e_per_s = 0.0;   ///< S
+  double ambient_e_per_s = 0.0;  ///< A
 
   friend bool operator==(const OperatingPoint&, const OperatingPoint&) = default;
 };
 auto fields_of(ConstOrNot<OperatingPoint> auto& p) {
-  return std::tuple(Field("signal_e_per_s", p.signal_e_per_s, at_least(0)),
-                    Field("ambient_e_per_s", p.ambient_e_per_s, at_least(0)));
+  return std::tuple(
+      Field("signal_e_per_s", p.signal_e_per_s, at_least(0), Help{"modulated light"}),
+      Field("ambient_e_per_s", p.ambient_e_per_s, at_least(0), Help{"all other light"}));
 }
 
 enum class DepthErrorKind {

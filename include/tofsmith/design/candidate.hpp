@@ -17,56 +17,66 @@ namespace tofsmith {
 
 /// Measurement of a designed code.
 struct MeasurementReport {
-  double residual_rms = 0.0;           ///< of the selected pair; 0 without a target
-  double smallest_residual_rms = 0.0;  ///< of the pair nearest to the target
+  double residual_rms = 0.0;
+  double smallest_residual_rms = 0.0;
   double demodulation_duty = 0.0;
   double modulation_duty = 0.0;
   double peak = 0.0;
-  int edges = 0;      ///< of modulation and demodulation
-  std::string start;  ///< name of the start
+  int edges = 0;
+  std::string start;
   std::vector<FactorizeIteration> history;
 };
 auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
   return std::tuple(
-      Field("residual_rms", m.residual_rms, at_least(0), FieldMark::may_be_null),
-      Field("smallest_residual_rms", m.smallest_residual_rms, at_least(0), FieldMark::may_be_null),
+      Field("residual_rms", m.residual_rms, at_least(0), FieldMark::may_be_null,
+            Help{"residual of the selected pair; 0 without a target"}),
+      Field("smallest_residual_rms", m.smallest_residual_rms, at_least(0), FieldMark::may_be_null,
+            Help{"residual of the pair nearest to the target"}),
       Field("demodulation_duty", m.demodulation_duty), Field("modulation_duty", m.modulation_duty),
-      Field("peak", m.peak), Field("edges", m.edges, at_least(0)), Field("start", m.start),
+      Field("peak", m.peak),
+      Field("edges", m.edges, at_least(0), Help{"number in modulation and demodulation"}),
+      Field("start", m.start, Help{"name of the start"}),
       Field("history", m.history, FieldMark::apart));
 }
 
 struct SearchStep {
-  double work = 0.0;     ///< in SearchRecord::work_unit
-  double error_m = 0.0;  ///< smallest yet
+  double work = 0.0;
+  double error_m = 0.0;
 };
 auto fields_of(ConstOrNot<SearchStep> auto& s) {
-  return std::tuple(Field("work", s.work), Field("error_m", s.error_m));
+  return std::tuple(Field("work", s.work, Help{"work at each step, in work_unit"}),
+                    Field("error_m", s.error_m, Help{"smallest error yet"}));
 }
 
 /// How a code was found.
 struct SearchRecord {
-  std::string work_unit;  ///< "gradient steps" or "candidates"
+  std::string work_unit;
   std::string error_name;
   std::vector<SearchStep> steps;
-  bool proved = false;  ///< no other code of the searched kind is better
-  std::string account;  ///< search space, counts and pruning tests
+  bool proved = false;
+  std::string account;
 };
 auto fields_of(ConstOrNot<SearchRecord> auto& s) {
-  return std::tuple(Field("work_unit", s.work_unit), Field("error_name", s.error_name),
-                    Field("steps", s.steps), Field("proved", s.proved),
-                    Field("account", s.account));
+  return std::tuple(
+      Field("work_unit", s.work_unit, Help{"unit of work: gradient steps or candidates"}),
+      Field("error_name", s.error_name), Field("steps", s.steps),
+      Field("proved", s.proved, Help{"no other code in the search space is better"}),
+      Field("account", s.account, Help{"search space, counts and pruning tests"}));
 }
 
 /// Order of exposures that a design chose for moving surfaces.
 struct ExposureOrder {
-  std::vector<int> order;         ///< number in the proposed code of each exposure, from 0
-  double rms_bias_m = 0.0;        ///< MotionBias::rms_m() in this order
-  double given_rms_bias_m = 0.0;  ///< in the order of the proposed code
+  std::vector<int> order;
+  double rms_bias_m = 0.0;
+  double given_rms_bias_m = 0.0;
 };
 auto fields_of(ConstOrNot<ExposureOrder> auto& o) {
-  return std::tuple(Field("order", o.order, at_least(0)),
-                    Field("rms_bias_m", o.rms_bias_m, at_least(0)),
-                    Field("given_rms_bias_m", o.given_rms_bias_m, at_least(0)));
+  return std::tuple(Field("order", o.order, at_least(0),
+                          Help{"for each exposure, its number in the proposed code, from 0"}),
+                    Field("rms_bias_m", o.rms_bias_m, at_least(0),
+                          Help{"root mean square depth error due to motion, in this order"}),
+                    Field("given_rms_bias_m", o.given_rms_bias_m, at_least(0),
+                          Help{"the same in the order of the proposed code"}));
 }
 
 /// A code that competes for a camera. Methods set the code and its origin; judge()

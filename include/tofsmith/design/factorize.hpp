@@ -103,14 +103,15 @@ auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
 
 /// One pair of convex steps.
 struct FactorizeIteration {
-  double objective = 0.0;              ///< rms + lambda (TV(d) + TV(m) / p)
-  double relaxed_residual_rms = 0.0;   ///< before projection
-  double playable_residual_rms = 0.0;  ///< after projection
+  double objective = 0.0;
+  double relaxed_residual_rms = 0.0;
+  double playable_residual_rms = 0.0;
 };
 auto fields_of(ConstOrNot<FactorizeIteration> auto& i) {
-  return std::tuple(Field("objective", i.objective),
-                    Field("relaxed_residual_rms", i.relaxed_residual_rms),
-                    Field("playable_residual_rms", i.playable_residual_rms));
+  return std::tuple(
+      Field("objective", i.objective, Help{"residual + lambda (TV(d) + TV(m) / p)"}),
+      Field("relaxed_residual_rms", i.relaxed_residual_rms, Help{"residual before projection"}),
+      Field("playable_residual_rms", i.playable_residual_rms, Help{"residual after projection"}));
 }
 
 /// Feasible pair of waveforms.

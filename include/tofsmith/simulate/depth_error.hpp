@@ -81,15 +81,15 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
 struct PointDepthError {
   OperatingPoint point;
   std::int64_t trials = 0;
-  Estimate linear_mde_m;    ///< |decoded - true|
-  Estimate circular_mde_m;  ///< wrapped |decoded - true|
+  Estimate linear_mde_m;
+  Estimate circular_mde_m;
   Estimate linear_rmse_m;
   Estimate circular_rmse_m;
-  Estimate outlier_rate;          ///< circular errors above the threshold
-  double cramer_rao_mae_m = 0.0;  ///< CramerRaoBound
+  Estimate outlier_rate;
+  double cramer_rao_mae_m = 0.0;
   /// ReceiverBound of the camera; for rows, HistogramBound of their light.
   double receiver_bound_mae_m = 0.0;
-  double direct_tof_bound_mae_m = 0.0;  ///< 0: none
+  double direct_tof_bound_mae_m = 0.0;
 
   const Estimate& of(DepthErrorMeasure measure) const {
     const bool is_linear = measure.kind == DepthErrorKind::linear;
@@ -104,17 +104,25 @@ inline double bound_or_nan(double bound_m) {
 }
 auto fields_of(ConstOrNot<PointDepthError> auto& p) {
   return std::tuple(
-      Field("point", p.point, FieldMark::in_place), Field("trials", p.trials, FieldMark::apart),
-      Field("linear_mde_m", p.linear_mde_m, at_least(0)),
-      Field("circular_mde_m", p.circular_mde_m, at_least(0)),
-      Field("linear_rmse_m", p.linear_rmse_m, at_least(0)),
-      Field("circular_rmse_m", p.circular_rmse_m, at_least(0)),
-      Field("outlier_rate", p.outlier_rate, closed(0, 1), FieldMark::without_error),
-      Field("cramer_rao_mae_m", p.cramer_rao_mae_m, at_least(0).or_infinity(), FieldMark::bound),
+      Field("point", p.point, FieldMark::in_place),
+      Field("trials", p.trials, FieldMark::apart, Help{"trials at each point"}),
+      Field("linear_mde_m", p.linear_mde_m, at_least(0),
+            Help{"mean absolute difference of decoded and true depth"}),
+      Field("circular_mde_m", p.circular_mde_m, at_least(0),
+            Help{"the same for the circular (wrapped) difference"}),
+      Field("linear_rmse_m", p.linear_rmse_m, at_least(0), Help{"root mean square difference"}),
+      Field("circular_rmse_m", p.circular_rmse_m, at_least(0),
+            Help{"root mean square circular difference"}),
+      Field("outlier_rate", p.outlier_rate, closed(0, 1), FieldMark::without_error,
+            Help{"share of circular errors above the threshold"}),
+      Field("cramer_rao_mae_m", p.cramer_rao_mae_m, at_least(0).or_infinity(), FieldMark::bound,
+            Help{"bound for the code; 0: no bound (docs/bounds.md)"}),
       Field("receiver_bound_mae_m", p.receiver_bound_mae_m, at_least(0).or_infinity(),
-            FieldMark::bound, FieldMark::may_be_null),
+            FieldMark::bound, FieldMark::may_be_null,
+            Help{"bound for any code on the camera; 0: no bound, e.g. without impulse responses"}),
       Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, at_least(0).or_infinity(),
-            FieldMark::bound, FieldMark::may_be_null));
+            FieldMark::bound, FieldMark::may_be_null,
+            Help{"bound for the camera's light; 0: no bound"}));
 }
 
 /// Averages over all operating points.
@@ -123,8 +131,9 @@ struct DepthErrorMean {
   Estimate mean_m;
 };
 auto fields_of(ConstOrNot<DepthErrorMean> auto& m) {
-  return std::tuple(Field("geometric_mean_m", m.geometric_mean_m, at_least(0)),
-                    Field("mean_m", m.mean_m, at_least(0)));
+  return std::tuple(
+      Field("geometric_mean_m", m.geometric_mean_m, at_least(0), Help{"geometric mean"}),
+      Field("mean_m", m.mean_m, at_least(0), Help{"arithmetic mean"}));
 }
 
 /// Depth error of a code on a camera.
@@ -134,8 +143,8 @@ struct DepthErrorReport {
   int taps = 0;
   int measurements = 0;
   int samples = 0;
-  std::int64_t trials = 0;         ///< per point; with a target: the maximum
-  int points_short_of_target = 0;  ///< reached max_trials first
+  std::int64_t trials = 0;
+  int points_short_of_target = 0;
   std::uint64_t seed = 0;
   double outlier_threshold_m = 0.0;
   DepthErrorMean linear, circular;
@@ -152,12 +161,19 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
   return std::tuple(
       Field("code", r.code, InDocuments{"name"}), Field("exposures", r.exposures, at_least(1)),
       Field("taps", r.taps, at_least(1)), Field("measurements", r.measurements, at_least(1)),
-      Field("samples", r.samples, at_least(1)), Field("trials", r.trials, FieldMark::apart),
-      Field("points_short_of_target", r.points_short_of_target, FieldMark::apart),
+      Field("samples", r.samples, at_least(1)),
+      Field("trials", r.trials, FieldMark::apart,
+            Help{"trials per operating point; with a target standard error the maximum"}),
+      Field("points_short_of_target", r.points_short_of_target, FieldMark::apart,
+            Help{"number of operating points that reached max_trials before the target"}),
       Field("seed", r.seed, FieldMark::apart),
-      Field("outlier_threshold_m", r.outlier_threshold_m, FieldMark::apart),
-      Field("linear", r.linear), Field("circular", r.circular), Field("linear_rmse", r.linear_rmse),
-      Field("circular_rmse", r.circular_rmse), Field("points", r.points));
+      Field("outlier_threshold_m", r.outlier_threshold_m, FieldMark::apart, outlier_threshold_help),
+      Field("linear", r.linear, Help{"means of the linear mean absolute errors"}),
+      Field("circular", r.circular, Help{"means of the circular mean absolute errors"}),
+      Field("linear_rmse", r.linear_rmse, Help{"means of the linear root mean square errors"}),
+      Field("circular_rmse", r.circular_rmse,
+            Help{"means of the circular root mean square errors"}),
+      Field("points", r.points));
 }
 
 /// Computes the depth error at every operating point by Monte Carlo simulation, with bounds; see

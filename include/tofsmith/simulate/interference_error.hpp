@@ -16,21 +16,24 @@ namespace tofsmith {
 /// Errors with the light of other cameras at one operating point.
 struct InterferencePoint {
   OperatingPoint point;
-  /// Root mean square error of DecodeMethod::zncc with interference and noise, to first order in
-  /// both; infinite for uniform albedo.
-  double expected_rmse_m = 0.0;
-  Estimate linear_mde_m;    ///< |decoded - true|
-  Estimate circular_mde_m;  ///< wrapped |decoded - true|
+  double expected_rmse_m = 0.0;  ///< of DecodeMethod::zncc; infinite for uniform albedo
+  Estimate linear_mde_m;
+  Estimate circular_mde_m;
   Estimate circular_rmse_m;
   WrongShares shares;
 };
 auto fields_of(ConstOrNot<InterferencePoint> auto& p) {
-  return std::tuple(Field("point", p.point, FieldMark::in_place),
-                    Field("expected_rmse_m", p.expected_rmse_m, at_least(0).or_infinity()),
-                    Field("linear_mde_m", p.linear_mde_m, at_least(0)),
-                    Field("circular_mde_m", p.circular_mde_m, at_least(0)),
-                    Field("circular_rmse_m", p.circular_rmse_m, at_least(0)),
-                    Field("shares", p.shares, FieldMark::in_place));
+  return std::tuple(
+      Field("point", p.point, FieldMark::in_place),
+      Field("expected_rmse_m", p.expected_rmse_m, at_least(0).or_infinity(),
+            Help{"root mean square error of zncc with interference and noise, to first order in "
+                 "both"}),
+      Field("linear_mde_m", p.linear_mde_m, at_least(0), Help{"mean absolute error of trials"}),
+      Field("circular_mde_m", p.circular_mde_m, at_least(0),
+            Help{"the same for the circular (wrapped) error"}),
+      Field("circular_rmse_m", p.circular_rmse_m, at_least(0),
+            Help{"root mean square circular error of trials"}),
+      Field("shares", p.shares, FieldMark::in_place));
 }
 
 /// Effect of the light of other cameras.
@@ -42,8 +45,8 @@ struct InterferenceReport {
   /// expected measurements with respect to the phase of the depth [periods], without its components
   /// along the derivatives with respect to signal and ambient light.
   double rms_m = 0.0;
-  DepthErrorMean linear, circular;  ///< over the operating points, with noise
-  WrongShares shares;               ///< means over the operating points
+  DepthErrorMean linear, circular;
+  WrongShares shares;
   std::vector<InterferencePoint> points;
 
   const DepthErrorMean& of(DepthErrorKind kind) const {
@@ -51,9 +54,15 @@ struct InterferenceReport {
   }
 };
 auto fields_of(ConstOrNot<InterferenceReport> auto& r) {
-  return std::tuple(Field("rms_m", r.rms_m, at_least(0)), Field("linear", r.linear),
-                    Field("circular", r.circular), Field("shares", r.shares, FieldMark::in_place),
-                    Field("points", r.points));
+  return std::tuple(
+      Field("rms_m", r.rms_m, at_least(0),
+            Help{"root mean square error of zncc without noise, to first order in the light of the "
+                 "others"}),
+      Field("linear", r.linear, Help{"mean linear errors with noise, over the operating points"}),
+      Field("circular", r.circular,
+            Help{"mean circular errors with noise, over the operating points"}),
+      Field("shares", r.shares, FieldMark::in_place, Help{"means over the operating points"}),
+      Field("points", r.points));
 }
 
 /// Computes the depth error with the light of the other cameras in `operating.interference`, by

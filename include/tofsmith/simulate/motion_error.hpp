@@ -48,24 +48,29 @@ class MotionBias {
 /// Errors at one operating point.
 struct MotionPoint {
   OperatingPoint point;
-  Estimate circular_mde_m;  ///< mean distance from the nearest true depth, wrapped
-  Estimate bias_m;          ///< mean difference from the nearest true depth
+  Estimate circular_mde_m;
+  Estimate bias_m;
   WrongShares shares;
 };
 auto fields_of(ConstOrNot<MotionPoint> auto& p) {
   return std::tuple(Field("point", p.point, FieldMark::in_place),
-                    Field("circular_mde_m", p.circular_mde_m, at_least(0)),
-                    Field("bias_m", p.bias_m), Field("shares", p.shares, FieldMark::in_place));
+                    Field("circular_mde_m", p.circular_mde_m, at_least(0),
+                          Help{"mean distance from the nearest true depth, wrapped"}),
+                    Field("bias_m", p.bias_m, Help{"mean difference from the nearest true depth"}),
+                    Field("shares", p.shares, FieldMark::in_place));
 }
 
 struct MotionErrors {
-  Estimate geometric_mean_m;        ///< of the circular errors
-  WrongShares shares;               ///< means over the operating points
+  Estimate geometric_mean_m;
+  WrongShares shares;
   std::vector<MotionPoint> points;  ///< in the order of OperatingRange::points()
 };
 auto fields_of(ConstOrNot<MotionErrors> auto& e) {
-  return std::tuple(Field("geometric_mean_m", e.geometric_mean_m, at_least(0)),
-                    Field("shares", e.shares, FieldMark::in_place), Field("points", e.points));
+  return std::tuple(
+      Field("geometric_mean_m", e.geometric_mean_m, at_least(0),
+            Help{"geometric mean over the operating points of the circular error"}),
+      Field("shares", e.shares, FieldMark::in_place, Help{"means over the operating points"}),
+      Field("points", e.points));
 }
 
 /// Effect of motion while the exposures of a frame follow one another.
@@ -73,15 +78,22 @@ struct MotionReport {
   double velocity_m_per_s = 0.0;
   double rms_bias_m = 0.0;   ///< MotionBias::rms_m()
   double mean_bias_m = 0.0;  ///< MotionBias::mean_m()
-  MotionErrors surface;      ///< of a moving surface; true depth: in the middle of the frame
-  /// At an edge that passes between two exposures; true depths: both surfaces. Codes with one
-  /// exposure have no points.
+  MotionErrors surface;
   MotionErrors edge;
 };
 auto fields_of(ConstOrNot<MotionReport> auto& r) {
   return std::tuple(
-      Field("velocity_m_per_s", r.velocity_m_per_s), Field("rms_bias_m", r.rms_bias_m, at_least(0)),
-      Field("mean_bias_m", r.mean_bias_m), Field("surface", r.surface), Field("edge", r.edge));
+      Field("velocity_m_per_s", r.velocity_m_per_s),
+      Field("rms_bias_m", r.rms_bias_m, at_least(0),
+            Help{"root mean square depth error of a moving surface without noise, over all depths, "
+                 "to first order in the velocity"}),
+      Field("mean_bias_m", r.mean_bias_m, Help{"mean of the same error"}),
+      Field("surface", r.surface,
+            Help{"errors of a moving surface; its true depth is its depth in the middle of the "
+                 "frame"}),
+      Field("edge", r.edge,
+            Help{"errors at an edge that passes between two exposures; the true depths are the "
+                 "depths of both surfaces. Codes with one exposure have no operating points"}));
 }
 
 /// Computes the depth error of a surface that moves along the ray, and of an edge that passes

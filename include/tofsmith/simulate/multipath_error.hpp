@@ -85,25 +85,34 @@ auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
 /// Error of the direct depth for one kind of light; errors are wrapped.
 struct MultipathCell {
   double ratio = 0.0;
-  double delay_m = 0.0;    ///< of the second return, or mean of the tail
-  double law_m = 0.0;      ///< r delta / (1 + r)
-  Estimate single_bias_m;  ///< single-path (zncc), as is single_error_m
+  double delay_m = 0.0;
+  double law_m = 0.0;
+  Estimate single_bias_m;
   Estimate single_error_m;
-  Estimate bias_m, error_m;       ///< two-return (tail) decoder; NaN if unsupported
-  double cramer_rao_mae_m = 0.0;  ///< MultipathBound
-  double two_share = 0.0;         ///< share of pixels with two returns
+  Estimate bias_m, error_m;
+  double cramer_rao_mae_m = 0.0;
+  double two_share = 0.0;
   double unresolved_share = 0.0;
 
   double gain() const { return single_error_m.value / error_m.value; }
 };
 auto fields_of(ConstOrNot<MultipathCell> auto& c) {
-  return std::tuple(Field("ratio", c.ratio), Field("delay_m", c.delay_m), Field("law_m", c.law_m),
-                    Field("single_bias_m", c.single_bias_m, FieldMark::without_error,
-                          InDocuments{"single_path_bias_m"}),
-                    Field("single_error_m", c.single_error_m, InDocuments{"single_path_error_m"}),
-                    Field("bias_m", c.bias_m, FieldMark::without_error),
-                    Field("error_m", c.error_m), Field("cramer_rao_mae_m", c.cramer_rao_mae_m),
-                    Field("two_share", c.two_share), Field("unresolved_share", c.unresolved_share));
+  return std::tuple(
+      Field("ratio", c.ratio, Help{"ratio of the second return or of the tail"}),
+      Field("delay_m", c.delay_m, Help{"delay of the second return, or mean delay of the tail"}),
+      Field("law_m", c.law_m,
+            Help{"approximate bias of single-path decoding, ratio delay_m / (1 + ratio)"}),
+      Field("single_bias_m", c.single_bias_m, FieldMark::without_error,
+            InDocuments{"single_path_bias_m"}, Help{"mean error of single-path decoding (zncc)"}),
+      Field("single_error_m", c.single_error_m, InDocuments{"single_path_error_m"},
+            Help{"mean absolute error of single-path decoding"}),
+      Field("bias_m", c.bias_m, FieldMark::without_error,
+            Help{"mean error of two-return (tail) decoding; NaN if the code does not support it"}),
+      Field("error_m", c.error_m, Help{"mean absolute error of two-return (tail) decoding"}),
+      Field("cramer_rao_mae_m", c.cramer_rao_mae_m, Help{"bound from MultipathBound"}),
+      Field("two_share", c.two_share, Help{"share of pixels with two detected returns"}),
+      Field("unresolved_share", c.unresolved_share,
+            Help{"share of pixels with unresolved multipath"}));
 }
 
 struct MultipathMaps {

@@ -86,25 +86,28 @@ CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed);
 /// Geometric mean of the depth error over the operating points [m].
 struct PerturbedError {
   std::string name;
-  /// With a decoder for the perturbed camera. Equal to uncalibrated_m if the code cannot measure
-  /// depth there, e.g. because mismatched taps pass ambient light.
+  /// Equal to uncalibrated_m if the code cannot measure depth on the perturbed camera, e.g. because
+  /// mismatched taps pass ambient light.
   Estimate calibrated_m;
-  Estimate uncalibrated_m;  ///< with a decoder for the described camera
+  Estimate uncalibrated_m;
 };
 auto fields_of(ConstOrNot<PerturbedError> auto& e) {
-  return std::tuple(Field("name", e.name),
-                    Field("calibrated_m", e.calibrated_m, at_least(0), FieldMark::as_object,
-                          InDocuments{"calibrated"}),
-                    Field("uncalibrated_m", e.uncalibrated_m, at_least(0), FieldMark::as_object,
-                          InDocuments{"uncalibrated"}));
+  return std::tuple(
+      Field("name", e.name, Help{"perturbations"}),
+      Field("calibrated_m", e.calibrated_m, at_least(0), FieldMark::as_object,
+            InDocuments{"calibrated"},
+            Help{"error for each perturbation, with a decoder that knows the perturbation"}),
+      Field("uncalibrated_m", e.uncalibrated_m, at_least(0), FieldMark::as_object,
+            InDocuments{"uncalibrated"},
+            Help{"the same with a decoder for the camera as described"}));
 }
 
 /// Depth error of a code on perturbed cameras.
 struct RobustnessReport {
-  DepthErrorKind kind = DepthErrorKind::linear;  ///< from the operating range
-  std::int64_t trials = 0;                       ///< per point
+  DepthErrorKind kind = DepthErrorKind::linear;
+  std::int64_t trials = 0;
   std::uint64_t seed = 0;
-  Estimate nominal_m;  ///< on the camera as described
+  Estimate nominal_m;
   std::vector<PerturbedError> perturbed;
 
   /// Largest error, including the nominal one [m].
@@ -112,10 +115,13 @@ struct RobustnessReport {
   Estimate worst_uncalibrated_m() const;
 };
 auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
-  return std::tuple(
-      Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials), Field("seed", r.seed),
-      Field("nominal_m", r.nominal_m, at_least(0), FieldMark::as_object, InDocuments{"nominal"}),
-      Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
+  return std::tuple(Field("kind", r.kind, InDocuments{"error"},
+                          Help{"error of the camera's operating range: linear or circular"}),
+                    Field("trials", r.trials, Help{"trials per operating point"}),
+                    Field("seed", r.seed),
+                    Field("nominal_m", r.nominal_m, at_least(0), FieldMark::as_object,
+                          InDocuments{"nominal"}, Help{"error on the camera as described"}),
+                    Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
 }
 
 /// Evaluates a code on the perturbations of its camera, except for perturbed codes that the camera
