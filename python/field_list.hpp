@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/statistics.hpp"
 
 // The descriptions of options and results as JSON, from which other languages derive theirs.
@@ -27,6 +28,8 @@ std::string type_of_field() {
     return "table";
   else if constexpr (std::is_same_v<Value, Estimate>)
     return "estimate";
+  else if constexpr (std::is_same_v<Value, Image<float>>)
+    return "image";
   else if constexpr (std::is_same_v<Value, bool>)
     return "boolean";
   else if constexpr (std::is_integral_v<Value>)
@@ -106,12 +109,11 @@ nlohmann::ordered_json result_fields(const Struct& its = {}) {
     nlohmann::ordered_json described = {{"name", field.name},
                                         {"type", detail::type_of_field<Value>()},
                                         {"optional", is_optional<Value>},
+                                        {"as_object", field.is(FieldMark::as_object)},
                                         {"help", field.help},
                                         {"unit", unit_of_key(field.name)}};
-    if constexpr (std::is_same_v<SingleValue<Value>, Estimate>) {
-      described["is_pair"] = field.is(FieldMark::as_object);
+    if constexpr (std::is_same_v<SingleValue<Value>, Estimate>)
       described["error"] = field.is(FieldMark::without_error) ? "" : error_name(field.name);
-    }
     if constexpr (HasFields<SingleValue<Value>>)
       described["fields"] = result_fields<SingleValue<Value>>();
     list.push_back(std::move(described));

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "field_list.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
 #include "tofsmith/camera/generator_report.hpp"
@@ -33,8 +34,10 @@ nlohmann::ordered_json result(const char* name, const char* help) {
 /// Description of a Python class with one array per field.
 template <typename Row>
 nlohmann::ordered_json columns(const char* name, const char* help) {
-  const nlohmann::ordered_json rows = {
-      {"name", "rows"}, {"type", "table[]"}, {"fields", result_fields<Row>()}};
+  const nlohmann::ordered_json rows = {{"name", "rows"},
+                                       {"type", "table[]"},
+                                       {"as_object", false},
+                                       {"fields", result_fields<Row>()}};
   return {{"name", name}, {"help", help}, {"fields", nlohmann::ordered_json::array({rows})}};
 }
 
@@ -70,6 +73,20 @@ nlohmann::ordered_json results() {
           "One measurement of a designed code and its comparison with the target, if any. Arrays "
           "(iterations,) belong to the best random start"),
       result<SearchRecord>("SearchRecord", "Progress of a code search; arrays (steps,)"),
+      result<PhotonTransferPoint>("PhotonTransferPoint",
+                                  "One measurement in a pair of frames with the same light"),
+      result<PhotonTransfer>(
+          "PhotonTransfer",
+          "Noise of a sensor: variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + "
+          "1/12; for differences of two buckets 2 read_noise^2 / gain^2 + light / gain + 2/12"),
+      result<DeadPixels>("DeadPixels", "Number of excluded pixels by reason, each counted once"),
+      result<HarmonicRatio>("HarmonicRatio",
+                            "Amplitudes of one harmonic of a measured table and of an ideal code"),
+      result<SensorDrift>(
+          "SensorDrift",
+          "Part of the drift that follows the temperature of the sensor; see TemperatureDrift"),
+      result<TemperatureDrift>("TemperatureDrift", "Drift of depth and signal with temperature"),
+      result<CalibratedStrayLight>("CalibratedStrayLight", "Result of calibrate_stray_light()"),
       result<ExposureOrder>("ExposureOrder",
                             "Order of exposures that a design chose for moving surfaces"),
   };

@@ -30,12 +30,13 @@ from ._results import Estimate
 
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "choice": "str",
          "estimate": "Estimate", "integer[]": "list[int]", "number[]": "list[float]",
-         "text[]": "list[str]", "estimate[]": "list[Estimate]"}
+         "text[]": "list[str]", "estimate[]": "list[Estimate]", "image": "npt.NDArray[np.float32]"}
 # Types of fields of structs in a list: one array or list per field.
 COLUMNS = {"integer": "npt.NDArray[np.int64]", "number": "FloatArray", "estimate": "FloatArray",
            "text": "list[str]"}
 # Types in documentation, if different.
-WORDS = {"FloatArray": "ndarray", "npt.NDArray[np.int64]": "ndarray of int64"}
+WORDS = {"FloatArray": "ndarray", "npt.NDArray[np.int64]": "ndarray of int64",
+         "npt.NDArray[np.float32]": "ndarray of float32"}
 
 
 class Attribute(NamedTuple):
@@ -64,7 +65,7 @@ ADDED = {
 
 def documentation(field):
     text = field["help"][:1].upper() + field["help"][1:]
-    if field.get("error") and not field["is_pair"]:
+    if field.get("error") and not field["as_object"]:
         text += ", and its standard error" if text else "Value and standard error"
     text += f" [{field['unit']}]" if field["unit"] and text else ""
     return text and text + "."
@@ -80,7 +81,7 @@ def columns_of(fields, known):
         if field["type"] == "text":
             names = [name + "s" for name in names]
         names = ["point_" + name if name in known else name for name in names]
-        text = documentation({**field, "is_pair": False})
+        text = documentation({**field, "as_object": False})
         yield Attribute(names, COLUMNS[field["type"]], text)
 
 
@@ -89,11 +90,13 @@ def attributes_of(fields, class_of):
     known = {field["name"] for field in fields}
     for field in fields:
         names = [field["name"]]
-        if field["type"] == "table[]":
+        if field["type"] == "table[]" and not field["as_object"]:
             yield from columns_of(field["fields"], known)
             continue
         kind = class_of(field["fields"]) if "fields" in field else TYPES[field["type"]]
-        if field["type"] == "estimate" and not field["is_pair"]:
+        if field["type"] == "table[]":
+            kind = f"list[{kind}]"
+        elif field["type"] == "estimate" and not field["as_object"]:
             names, kind = [name for name in (field["name"], field["error"]) if name], "float"
         if field["optional"]:
             kind = f"Optional[{kind}]"

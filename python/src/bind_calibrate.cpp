@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "field_dicts.hpp"
 #include "options.hpp"
 #include "reports.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
@@ -95,31 +96,6 @@ void write_responding(const CalibratedResponse& found, const std::string& path,
                         policy_of(overwrite));
 }
 
-py::dict noise_dict(const PhotonTransfer& found) {
-  py::list points;
-  for (const PhotonTransferPoint& point : found.points) {
-    py::dict dict;
-    dict["mean_dn"] = point.mean_dn;
-    dict["variance_dn2"] = pair_of(point.variance_dn2);
-    dict["dark"] = point.dark;
-    dict["saturated"] = point.saturated;
-    points.append(dict);
-  }
-  py::dict dict;
-  dict["gain_e_per_dn"] = pair_of(found.gain_e_per_dn);
-  dict["read_noise_e"] = pair_of(found.read_noise_e);
-  dict["black_level_dn"] = pair_of(found.black_level_dn);
-  dict["full_well_e"] =
-      found.full_well_e ? py::object(pair_of(*found.full_well_e)) : py::object(py::none());
-  dict["saturation_dn"] = found.saturation_dn;
-  dict["adc_bits"] = found.adc_bits;
-  dict["buckets"] = found.buckets;
-  dict["reduced_chi2"] = found.reduced_chi2;
-  dict["points"] = points;
-  dict["notes"] = found.notes;
-  return dict;
-}
-
 PhotonTransfer measure_noise(const py::list& levels, const py::object& dark, const Camera& camera,
                              const std::optional<CodeSet>& code, const py::dict& values) {
   std::vector<RawFrames> frames;
@@ -145,7 +121,7 @@ void bind_calibrate(py::module_& module) {
       .def("write_report", writing(&response_report));
   module.def("calibrate_impulse_response", &calibrate_response);
   py::class_<PhotonTransfer>(module, "PhotonTransfer")
-      .def("fields", &noise_dict)
+      .def("fields", &fields_dict<PhotonTransfer>)
       .def("camera", [](const PhotonTransfer& found,
                         const Camera& camera) { return with_noise(camera, found); })
       .def("write_report",

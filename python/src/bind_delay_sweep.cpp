@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "field_dicts.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
@@ -75,21 +76,6 @@ CalibratedCorrelation calibrate(const Doubles& delay_periods, const py::object& 
   });
 }
 
-py::dict dead_dict(const DeadPixels& dead) {
-  py::dict dict;
-  dict["not_a_number"] = dead.not_a_number;
-  dict["constant"] = dead.constant;
-  dict["saturated"] = dead.saturated;
-  dict["low"] = dead.low;
-  return dict;
-}
-
-py::list pairs_of(const std::vector<Estimate>& estimates) {
-  py::list pairs;
-  for (const Estimate& estimate : estimates) pairs.append(pair_of(estimate));
-  return pairs;
-}
-
 py::dict correlation_dict(const CalibratedCorrelation& found) {
   const auto or_none = [](bool known, const Estimate& estimate) {
     return known ? py::object(pair_of(estimate)) : py::object(py::none());
@@ -106,11 +92,11 @@ py::dict correlation_dict(const CalibratedCorrelation& found) {
   dict["gain"] = adopt(Image<float>(found.maps.gain));
   dict["delay_error_m"] = found.delay_error_m;
   dict["gain_error"] = found.gain_error;
-  dict["dead"] = dead_dict(found.dead);
+  dict["dead"] = fields_dict(found.dead);
   dict["drift_corrected"] = found.drift_corrected;
   dict["light_drift"] = or_none(found.drift_known, found.light_drift);
   dict["level_drift"] = or_none(found.drift_known, found.level_drift);
-  dict["tap_mismatch"] = pairs_of(found.tap_mismatch);
+  dict["tap_mismatch"] = object_of(found.tap_mismatch);
   dict["noise_rms"] = found.noise_rms;
   dict["noise_source"] = found.noise_source;
   dict["notes"] = found.notes;
@@ -118,15 +104,6 @@ py::dict correlation_dict(const CalibratedCorrelation& found) {
 }
 
 py::dict ideal_fit_dict(const IdealCodeFit& fit) {
-  py::list harmonics;
-  for (const HarmonicRatio& h : fit.harmonics) {
-    py::dict dict;
-    dict["harmonic"] = h.harmonic;
-    dict["measured"] = h.measured;
-    dict["ideal"] = h.ideal;
-    dict["ratio"] = pair_of(h.ratio);
-    harmonics.append(dict);
-  }
   py::dict dict;
   dict["code"] = fit.code;
   dict["delay_periods"] = fit.delay_periods;
@@ -139,7 +116,7 @@ py::dict ideal_fit_dict(const IdealCodeFit& fit) {
   dict["response"] = impulse_response_dict(fit.response);
   dict["parameter_hz"] = pair_of(fit.parameter_hz);
   dict["fitted"] = adopt(Eigen::MatrixXd(fit.fitted));
-  dict["harmonics"] = harmonics;
+  dict["harmonics"] = object_of(fit.harmonics);
   return dict;
 }
 
@@ -220,35 +197,6 @@ TemperatureDrift calibrate_drift(const py::object& frames, const std::vector<dou
   });
 }
 
-py::dict drift_dict(const TemperatureDrift& found) {
-  py::dict dict;
-  dict["mean_c"] = found.mean_c;
-  dict["offset_m_per_c"] = pair_of(found.offset_m_per_c);
-  dict["signal_per_c"] = pair_of(found.signal_per_c);
-  dict["offset_m_per_c2"] = pair_of(found.offset_m_per_c2);
-  dict["signal_per_c2"] = pair_of(found.signal_per_c2);
-  dict["interval_factor"] = found.interval_factor;
-  dict["offset_rms_m"] = found.offset_rms_m;
-  dict["signal_rms"] = found.signal_rms;
-  dict["temperature_c"] = found.temperature_c;
-  dict["offset_m"] = found.offset_m;
-  dict["log_signal"] = found.log_signal;
-  dict["pixels"] = found.pixels;
-  dict["notes"] = found.notes;
-  dict["sensor"] = py::none();
-  if (found.sensor) {
-    py::dict sensor;
-    sensor["mean_c"] = found.sensor->mean_c;
-    sensor["offset_m_per_c"] = pair_of(found.sensor->offset_m_per_c);
-    sensor["signal_per_c"] = pair_of(found.sensor->signal_per_c);
-    sensor["temperature_c"] = found.sensor->temperature_c;
-    dict["sensor"] = sensor;
-  }
-  dict["hysteresis_m"] = py::none();
-  if (found.hysteresis_m) dict["hysteresis_m"] = pair_of(*found.hysteresis_m);
-  return dict;
-}
-
 CalibratedStrayLight calibrate_stray(const py::object& frames, const py::object& dark,
                                      const Camera& camera, const py::object& callback) {
   const RawFrames raw = to_raw_frames(frames, "frames");
@@ -256,18 +204,6 @@ CalibratedStrayLight calibrate_stray(const py::object& frames, const py::object&
   return without_gil(callback, [&](const Progress& progress) {
     return calibrate_stray_light(raw, dark_frames, camera, progress);
   });
-}
-
-py::dict stray_dict(const CalibratedStrayLight& found) {
-  py::dict dict;
-  dict["kernel"] = adopt(Image<float>(found.kernel));
-  dict["radius_px"] = found.radius_px;
-  dict["share"] = pairs_of(found.share);
-  dict["total"] = pair_of(found.total);
-  dict["target_pixels"] = found.target_pixels;
-  dict["pixels"] = found.pixels;
-  dict["notes"] = found.notes;
-  return dict;
 }
 
 }  // namespace
@@ -294,7 +230,7 @@ void bind_delay_sweep(py::module_& module) {
       .def("write_report", writing(&depth_report));
   module.def("calibrate_stray_light", &calibrate_stray);
   py::class_<CalibratedStrayLight>(module, "CalibratedStrayLight")
-      .def("fields", &stray_dict)
+      .def("fields", &fields_dict<CalibratedStrayLight>)
       .def("write",
            [](const CalibratedStrayLight& found, const std::string& path, bool overwrite) {
              write_float_image(path, found.kernel, "kernel", policy_of(overwrite));
@@ -302,7 +238,7 @@ void bind_delay_sweep(py::module_& module) {
       .def("write_report", writing(&stray_light_report));
   module.def("calibrate_temperature", &calibrate_drift);
   py::class_<TemperatureDrift>(module, "TemperatureDrift")
-      .def("fields", &drift_dict)
+      .def("fields", &fields_dict<TemperatureDrift>)
       .def("camera",
            [](const TemperatureDrift& found, const Camera& camera,
               std::optional<double> reference_c, std::optional<double> sensor_reference_c) {

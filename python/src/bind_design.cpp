@@ -39,24 +39,15 @@ py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
   dict["iterations"] = candidate.iterations;
   dict["seconds"] = candidate.seconds;
   dict["target"] = adopt(Eigen::MatrixXd(candidate.target));
-  py::list measurements;
-  for (const MeasurementReport& report : candidate.per_measurement)
-    measurements.append(fields_dict(report));
-  dict["per_measurement"] = measurements;
-  dict["search"] = candidate.search ? py::object(fields_dict(*candidate.search)) : py::none();
+  dict["per_measurement"] = object_of(candidate.per_measurement);
+  dict["search"] = object_of(candidate.search);
   dict["message"] = candidate.message;
   dict["robustness"] =
       candidate.robustness ? py::object(robustness_dict(*candidate.robustness)) : py::none();
   dict["multipath"] =
       candidate.multipath ? py::object(operating_multipath_dict(*candidate.multipath)) : py::none();
-  dict["interference"] =
-      candidate.interference ? py::object(fields_dict(*candidate.interference)) : py::none();
-  dict["exposure_order"] = py::none();
-  if (const auto& chosen = candidate.exposure_order) {
-    py::dict order;
-    for_each_field(*chosen, [&](const auto& field) { order[field.name] = field.value; });
-    dict["exposure_order"] = order;
-  }
+  dict["interference"] = object_of(candidate.interference);
+  dict["exposure_order"] = object_of(candidate.exposure_order);
   return dict;
 }
 
@@ -218,11 +209,8 @@ py::dict alternation_dict(const TargetSet& targets, int measurement, const Camer
   return dict;
 }
 
-py::list generator_reports(const CodeSet& code, const Camera& camera) {
-  py::list list;
-  for (const GeneratorReport& report : generator_report(code, camera))
-    list.append(fields_dict(report));
-  return list;
+py::object generator_reports(const CodeSet& code, const Camera& camera) {
+  return object_of(generator_report(code, camera));
 }
 
 py::array_t<double> output_of_arm(const Waveform& waveform, const Camera& camera, bool is_light,

@@ -57,9 +57,39 @@ void add_columns(py::dict& dict, const std::vector<Struct>& items) {
     const py::str key = dict.contains(name) ? "point_" + name : name;
     if constexpr (std::is_same_v<Value, std::string>)
       dict[py::str(name + "s")] = column;
+    else if constexpr (std::is_same_v<Value, bool>)
+      dict[key] = py::array_t<bool>(py::cast(column));
     else
       dict[key] = adopt(std::move(column));
   });
+}
+
+template <typename Value>
+inline constexpr bool is_struct_list = is_list<Value>&& HasFields<SingleValue<Value>>;
+
+template <typename Struct>
+py::dict fields_dict(const Struct& its);
+
+/// Converts the value of a field that is not an estimate with a separate standard error.
+template <typename Value>
+py::object object_of(const Value& value) {
+  if constexpr (is_optional<Value>) {
+    return value ? object_of(*value) : py::none();
+  } else if constexpr (std::is_same_v<Value, Estimate>) {
+    return pair_of(value);
+  } else if constexpr (HasFields<Value>) {
+    return fields_dict(value);
+  } else if constexpr (is_struct_list<Value> || std::is_same_v<Value, std::vector<Estimate>>) {
+    py::list items;
+    for (const auto& item : value) items.append(object_of(item));
+    return items;
+  } else if constexpr (std::is_same_v<Value, Image<float>>) {
+    return adopt(Image<float>(value));
+  } else if constexpr (std::is_enum_v<Value>) {
+    return py::str(std::string(name_of(value)));
+  } else {
+    return py::cast(value);
+  }
 }
 
 template <typename Struct>
@@ -67,22 +97,16 @@ py::dict fields_dict(const Struct& its) {
   py::dict dict;
   for_each_field(its, [&](const auto& field) {
     using Value = std::remove_cvref_t<decltype(field.value)>;
-    if constexpr (std::is_same_v<Value, Estimate>) {
-      if (field.is(FieldMark::as_object)) {
-        dict[field.name] = pair_of(field.value);
-      } else {
+    if (!field.is(FieldMark::as_object)) {
+      if constexpr (std::is_same_v<Value, Estimate>) {
         dict[field.name] = field.value.value;
         dict[py::str(error_name(field.name))] = field.value.standard_error;
+        return;
+      } else if constexpr (is_struct_list<Value>) {
+        return add_columns(dict, field.value);
       }
-    } else if constexpr (HasFields<Value>) {
-      dict[field.name] = fields_dict(field.value);
-    } else if constexpr (is_list<Value>) {
-      add_columns(dict, field.value);
-    } else if constexpr (std::is_enum_v<Value>) {
-      dict[field.name] = std::string(name_of(field.value));
-    } else {
-      dict[field.name] = field.value;
     }
+    dict[field.name] = object_of(field.value);
   });
   return dict;
 }

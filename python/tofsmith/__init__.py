@@ -29,8 +29,6 @@ from ._camera import Camera, built_in_camera_names, camera_keys
 from ._camera_calibration import (
     CalibratedStrayLight,
     PhotonTransfer,
-    PhotonTransferPoint,
-    SensorDrift,
     TemperatureDrift,
     calibrate_stray_light,
     calibrate_temperature,
@@ -68,7 +66,6 @@ from ._correlation_calibration import (
     CalibratedCorrelation,
     DeadPixels,
     DelaySweep,
-    HarmonicRatio,
     IdealCodeFit,
     calibrate_correlation,
     fit_ideal_codes,
@@ -157,12 +154,15 @@ from ._result_fields import (
     DepthErrorMean,
     ExposureOrder,
     GeneratorReport,
+    HarmonicRatio,
     InterferenceReport,
     MeasurementReport,
     MotionErrors,
     MotionReport,
+    PhotonTransferPoint,
     RobustnessReport,
     SearchRecord,
+    SensorDrift,
     WrongShares,
 )
 from ._results import Estimate

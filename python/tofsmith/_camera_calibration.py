@@ -11,60 +11,19 @@ from typing import Any, Optional, Union, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from . import _check, _tofsmith
+from . import _check, _result_fields, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import Path, Progress, RawLike
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable, table_of
 from ._option_fields import PhotonTransferOptions
 from ._options import takes
-from ._results import Estimate, WithReport, calibrated
+from ._results import WithReport, calibrated
 
 
 @dataclass(frozen=True)
-class PhotonTransferPoint:
-    """Mean [DN] and temporal variance of one frame [DN^2] of one measurement in a pair of frames,
-    and whether it is of the dark frames or too close to saturation. For differences: light of both
-    buckets [DN] and variance of numbers with about the same light."""
-
-    mean_dn: float
-    variance_dn2: Estimate
-    dark: bool
-    saturated: bool
-
-
-@dataclass(frozen=True)
-class PhotonTransfer:
-    """Noise of a sensor: variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12;
-    for differences of two buckets 2 read_noise^2 / gain^2 + light / gain + 2/12.
-
-    Attributes
-    ----------
-    gain_e_per_dn, read_noise_e, black_level_dn : Estimate
-        [e/DN], [e], [DN]
-    full_well_e : Estimate, optional
-        [e], if reached below the converter's maximum.
-    saturation_dn : float
-        Highest number, or the number at which numbers are clipped.
-    adc_bits : int
-    buckets : int
-        Buckets per raw number: 2 if differences are read.
-    reduced_chi2 : float
-        Misfit of the line: near 1 if the model is valid.
-    points : list of PhotonTransferPoint
-    notes : list of str
-    """
-
-    gain_e_per_dn: Estimate
-    read_noise_e: Estimate
-    black_level_dn: Estimate
-    full_well_e: Optional[Estimate]
-    saturation_dn: float
-    adc_bits: int
-    buckets: int
-    reduced_chi2: float
-    points: list[PhotonTransferPoint]
-    notes: list[str]
+class PhotonTransfer(_result_fields.PhotonTransfer):
+    __doc__ = _result_fields.PhotonTransfer.__doc__
     _handle: _tofsmith.PhotonTransfer = field(repr=False, compare=False)
 
     def camera(self, camera: CameraLike) -> Camera:
@@ -131,30 +90,8 @@ def photon_transfer(
 
 
 @dataclass(frozen=True)
-class CalibratedStrayLight(WithReport):
-    """Result of calibrate_stray_light().
-
-    Attributes
-    ----------
-    kernel : ndarray of float32, shape (2 R + 1, 2 R + 1)
-        Share of a pixel's light that is scattered to each other pixel, the centre being the pixel
-        itself.
-    radius_px, share : list of float, list of Estimate
-        Distances, and the share scattered to each pixel at that distance.
-    total : Estimate
-        Share of all light that is scattered.
-    target_pixels, pixels : int
-        Pixels of the target, and around it.
-    notes : list of str
-    """
-
-    kernel: npt.NDArray[np.float32]
-    radius_px: list[float]
-    share: list[Estimate]
-    total: Estimate
-    target_pixels: int
-    pixels: int
-    notes: list[str]
+class CalibratedStrayLight(_result_fields.CalibratedStrayLight, WithReport):
+    __doc__ = _result_fields.CalibratedStrayLight.__doc__
     _handle: _tofsmith.CalibratedStrayLight = field(repr=False, compare=False)
 
     def write(self, path: Path, *, overwrite: bool = False) -> None:
@@ -235,60 +172,8 @@ def remove_stray_light(
 
 
 @dataclass(frozen=True)
-class SensorDrift:
-    """Part of the drift that follows the temperature of the sensor; see TemperatureDrift."""
-
-    mean_c: float
-    offset_m_per_c: Estimate
-    signal_per_c: Estimate
-    temperature_c: list[float]
-
-
-@dataclass(frozen=True)
-class TemperatureDrift(WithReport):
-    """Drift of depth and signal with temperature.
-
-    Attributes
-    ----------
-    mean_c : float
-        Mean of the frames [degrees C], the origin of both lines.
-    offset_m_per_c, signal_per_c : Estimate
-        Change of the measured depth per degree [m]; d log(signal) per degree. A 95 % interval is +-
-        `interval_factor` standard errors.
-    offset_m_per_c2, signal_per_c2 : Estimate
-        Second-order terms, in addition to the lines.
-    interval_factor : float
-    offset_rms_m, signal_rms : float
-        Deviation of the frames from the lines [m]; the same for log(signal).
-    temperature_c, offset_m, log_signal : list of float
-        For each frame [degrees C]; offset relative to the mean of all frames [m]; the same for
-        log(signal).
-    pixels : int
-        Number of pixels that decode in every frame.
-    notes : list of str
-    sensor : SensorDrift or None
-        Drift with the temperature of the sensor, if it was fitted. The other attributes then refer
-        to the temperature of the light source.
-    hysteresis_m : Estimate or None
-        Offset while the temperature rises, minus the offset while it falls [m]; None if it does not
-        do both.
-    """
-
-    mean_c: float
-    offset_m_per_c: Estimate
-    signal_per_c: Estimate
-    offset_m_per_c2: Estimate
-    signal_per_c2: Estimate
-    interval_factor: float
-    offset_rms_m: float
-    signal_rms: float
-    temperature_c: list[float]
-    offset_m: list[float]
-    log_signal: list[float]
-    pixels: int
-    notes: list[str]
-    sensor: Optional[SensorDrift]
-    hysteresis_m: Optional[Estimate]
+class TemperatureDrift(_result_fields.TemperatureDrift, WithReport):
+    __doc__ = _result_fields.TemperatureDrift.__doc__
     _handle: _tofsmith.TemperatureDrift = field(repr=False, compare=False)
 
     def camera(

@@ -12,13 +12,14 @@ from typing import Any, Optional, Union, overload
 import numpy as np
 import numpy.typing as npt
 
-from . import _check, _tofsmith
+from . import _check, _result_fields, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._camera_fields import ImpulseResponse
 from ._check import FloatArray, Path, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._depth_calibration import CalibratedDepth, calibrate_depth
+from ._result_fields import HarmonicRatio
 from ._results import Estimate, calibrated
 
 
@@ -41,14 +42,8 @@ class DelaySweep:
 
 
 @dataclass(frozen=True)
-class DeadPixels:
-    """Number of excluded pixels by reason, each counted once: not a number in some frame, the same
-    number in all, clipped in some, or a response below a tenth of the median."""
-
-    not_a_number: int
-    constant: int
-    saturated: int
-    low: int
+class DeadPixels(_result_fields.DeadPixels):
+    __doc__ = _result_fields.DeadPixels.__doc__
 
     @property
     def total(self) -> int:
@@ -312,17 +307,6 @@ def calibrate_correlation(
         _check.progress(progress),
     )
     return calibrated(CalibratedCorrelation, handle)
-
-
-@dataclass(frozen=True)
-class HarmonicRatio:
-    """One harmonic of a measured table and of an ideal code: amplitudes, and the transfer of both
-    arms (NaN if the code does not have the harmonic)."""
-
-    harmonic: int
-    measured: float
-    ideal: float
-    ratio: Estimate
 
 
 @dataclass(frozen=True)

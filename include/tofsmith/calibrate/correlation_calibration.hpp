@@ -77,10 +77,17 @@ struct CorrelationCalibrationOptions {
 struct DeadPixels {
   int not_a_number = 0;
   int constant = 0;
-  int saturated = 0;  ///< clipped in some frame
-  int low = 0;        ///< response below a tenth of the usual one
+  int saturated = 0;
+  int low = 0;
   int total() const { return not_a_number + constant + saturated + low; }
 };
+auto fields_of(ConstOrNot<DeadPixels> auto& d) {
+  return std::tuple(
+      Field("not_a_number", d.not_a_number, Help{"pixels that are not a number in some frame"}),
+      Field("constant", d.constant, Help{"the same number in all frames"}),
+      Field("saturated", d.saturated, Help{"clipped in some frame"}),
+      Field("low", d.low, Help{"response below a tenth of the median"}));
+}
 
 /// Result of calibrate_correlation().
 struct CalibratedCorrelation {
@@ -217,26 +224,60 @@ struct SensorDrift {
   Estimate signal_per_c;
   std::vector<double> temperature_c;
 };
+auto fields_of(ConstOrNot<SensorDrift> auto& d) {
+  return std::tuple(Field("mean_c", d.mean_c),
+                    Field("offset_m_per_c", d.offset_m_per_c, FieldMark::as_object),
+                    Field("signal_per_c", d.signal_per_c, FieldMark::as_object),
+                    Field("temperature_c", d.temperature_c));
+}
 
 /// Drift of depth and signal with one temperature, or with two for light source and sensor.
 struct TemperatureDrift {
-  double mean_c = 0.0;  ///< mean of the frames [degrees C], origin of both lines
+  double mean_c = 0.0;
   Estimate offset_m_per_c;
-  Estimate signal_per_c;              ///< d log(signal) per degree
-  Estimate offset_m_per_c2;           ///< second-order term of the depth
-  Estimate signal_per_c2;             ///< second-order term of log(signal)
-  double interval_factor = 0.0;       ///< half width of 95 % intervals [standard errors]
-  double offset_rms_m = 0.0;          ///< of the frames around the line
-  double signal_rms = 0.0;            ///< of log(signal) around the line
-  std::vector<double> temperature_c;  ///< of each frame (F)
-  std::vector<double> offset_m;       ///< of each frame against their mean (F)
-  std::vector<double> log_signal;     ///< of each frame against their mean (F)
-  std::int64_t pixels = 0;            ///< that decode in every frame
+  Estimate signal_per_c;
+  Estimate offset_m_per_c2;
+  Estimate signal_per_c2;
+  double interval_factor = 0.0;
+  double offset_rms_m = 0.0;
+  double signal_rms = 0.0;
+  std::vector<double> temperature_c;  ///< (F), as the next two
+  std::vector<double> offset_m;
+  std::vector<double> log_signal;
+  std::int64_t pixels = 0;
   std::vector<std::string> notes;
-  std::optional<SensorDrift> sensor;  ///< none: a single temperature was fitted
-  /// Offset at rising minus offset at falling temperature; none unless it does both.
+  std::optional<SensorDrift> sensor;
   std::optional<Estimate> hysteresis_m;
 };
+auto fields_of(ConstOrNot<TemperatureDrift> auto& d) {
+  return std::tuple(
+      Field("mean_c", d.mean_c, Help{"mean temperature of the frames, the origin of both lines"}),
+      Field("offset_m_per_c", d.offset_m_per_c, FieldMark::as_object,
+            Help{"change of the measured depth with temperature"}),
+      Field("signal_per_c", d.signal_per_c, FieldMark::as_object,
+            Help{"change of log(signal) with temperature"}),
+      Field("offset_m_per_c2", d.offset_m_per_c2, FieldMark::as_object,
+            Help{"second-order term of the depth, in addition to the line"}),
+      Field("signal_per_c2", d.signal_per_c2, FieldMark::as_object,
+            Help{"second-order term of log(signal)"}),
+      Field("interval_factor", d.interval_factor,
+            Help{"half width of 95 % intervals of the lines, in standard errors"}),
+      Field("offset_rms_m", d.offset_rms_m,
+            Help{"deviation of the frames from the line of the depth"}),
+      Field("signal_rms", d.signal_rms, Help{"the same for log(signal)"}),
+      Field("temperature_c", d.temperature_c, Help{"temperature of each frame"}),
+      Field("offset_m", d.offset_m,
+            Help{"offset of each frame relative to the mean of all frames"}),
+      Field("log_signal", d.log_signal, Help{"the same for log(signal)"}),
+      Field("pixels", d.pixels, Help{"number of pixels that decode in every frame"}),
+      Field("notes", d.notes),
+      Field("sensor", d.sensor,
+            Help{"drift with the temperature of the sensor, if it was fitted; the other "
+                 "attributes then refer to the temperature of the light source"}),
+      Field("hysteresis_m", d.hysteresis_m, FieldMark::as_object,
+            Help{"offset at rising minus offset at falling temperature; none unless it does "
+                 "both"}));
+}
 
 /// Determines the drift with temperature from frames of a static scene. The offset of a frame is
 /// the median over the pixels that are ok in all frames, weighted by the inverse predicted
@@ -261,13 +302,26 @@ Camera with_temperature(Camera camera, const TemperatureDrift& found,
 /// Result of calibrate_stray_light().
 struct CalibratedStrayLight {
   Image<float> kernel;            ///< for StrayLight
-  std::vector<double> radius_px;  ///< distances from the pixel (J)
-  std::vector<Estimate> share;    ///< of a pixel's light in one pixel at each distance (J)
-  Estimate total;                 ///< scattered share of all light
+  std::vector<double> radius_px;  ///< (J)
+  std::vector<Estimate> share;    ///< (J)
+  Estimate total;
   std::int64_t target_pixels = 0;
-  std::int64_t pixels = 0;  ///< around the target
+  std::int64_t pixels = 0;
   std::vector<std::string> notes;
 };
+auto fields_of(ConstOrNot<CalibratedStrayLight> auto& s) {
+  return std::tuple(
+      Field("kernel", s.kernel,
+            Help{"share of a pixel's light that is scattered to each other pixel, the centre "
+                 "being the pixel itself, (2 R + 1, 2 R + 1)"}),
+      Field("radius_px", s.radius_px, Help{"distances from the pixel"}),
+      Field("share", s.share, FieldMark::as_object,
+            Help{"share of a pixel's light in one pixel at each distance"}),
+      Field("total", s.total, FieldMark::as_object, Help{"scattered share of all light"}),
+      Field("target_pixels", s.target_pixels, Help{"number of pixels of the target"}),
+      Field("pixels", s.pixels, Help{"number of pixels around the target"}),
+      Field("notes", s.notes));
+}
 
 /// Determines the stray light of a lens from frames of a small bright target, the pixels with at
 /// least half the light of the brightest one, on a black background. The kernel depends on distance
@@ -294,10 +348,18 @@ void write_calibrated_table(const std::filesystem::path& path, const CalibratedC
 /// Harmonic of a measured table compared with an ideal code.
 struct HarmonicRatio {
   int harmonic = 1;
-  double measured = 0.0;  ///< root of the sum of squares over measurements
-  double ideal = 0.0;     ///< of the fitted code without impulse responses
-  Estimate ratio;         ///< transmission of both arms; NaN if the code does not have the harmonic
+  double measured = 0.0;
+  double ideal = 0.0;
+  Estimate ratio;
 };
+auto fields_of(ConstOrNot<HarmonicRatio> auto& h) {
+  return std::tuple(
+      Field("harmonic", h.harmonic),
+      Field("measured", h.measured, Help{"root of the sum of squares over measurements"}),
+      Field("ideal", h.ideal, Help{"the same of the fitted code without impulse responses"}),
+      Field("ratio", h.ratio, FieldMark::as_object,
+            Help{"transfer of both arms; NaN if the code does not have the harmonic"}));
+}
 
 /// An ideal code fitted to a measured table.
 struct IdealCodeFit {

@@ -35,11 +35,22 @@ auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
 
 /// Mean and variance of one measurement in a pair of frames.
 struct PhotonTransferPoint {
-  double mean_dn = 0.0;   ///< over both frames and all pixels; for differences the light [DN]
-  Estimate variance_dn2;  ///< temporal, of one frame [DN^2]
+  double mean_dn = 0.0;
+  Estimate variance_dn2;
   bool dark = false;
-  bool saturated = false;  ///< too close to the limit for the fit
+  bool saturated = false;
 };
+auto fields_of(ConstOrNot<PhotonTransferPoint> auto& p) {
+  return std::tuple(
+      Field("mean_dn", p.mean_dn,
+            Help{"mean over both frames and all pixels; for differences the light of both "
+                 "buckets"}),
+      Field("variance_dn2", p.variance_dn2, FieldMark::as_object,
+            Help{"temporal variance of one frame [DN^2]; for differences of numbers with about "
+                 "the same light"}),
+      Field("dark", p.dark, Help{"the point is of the dark frames"}),
+      Field("saturated", p.saturated, Help{"too close to the limit for the fit"}));
+}
 
 /// Noise of a sensor from pairs of frames with the same light:
 ///   variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12
@@ -47,14 +58,29 @@ struct PhotonTransfer {
   Estimate gain_e_per_dn;
   Estimate read_noise_e;
   Estimate black_level_dn;
-  std::optional<Estimate> full_well_e;  ///< if reached below the converter's maximum
-  double saturation_dn = 0.0;           ///< number at which values are clipped, or the highest one
+  std::optional<Estimate> full_well_e;
+  double saturation_dn = 0.0;
   int adc_bits = 0;
-  int buckets = 1;            ///< per raw number: 2 if differences are read
-  double reduced_chi2 = 0.0;  ///< of the fit; near 1 if the model is valid
+  int buckets = 1;
+  double reduced_chi2 = 0.0;
   std::vector<PhotonTransferPoint> points;
   std::vector<std::string> notes;
 };
+auto fields_of(ConstOrNot<PhotonTransfer> auto& p) {
+  return std::tuple(
+      Field("gain_e_per_dn", p.gain_e_per_dn, FieldMark::as_object, Help{"gain"}),
+      Field("read_noise_e", p.read_noise_e, FieldMark::as_object, Help{"read noise"}),
+      Field("black_level_dn", p.black_level_dn, FieldMark::as_object, Help{"black level"}),
+      Field("full_well_e", p.full_well_e, FieldMark::as_object,
+            Help{"full well, if reached below the converter's maximum"}),
+      Field("saturation_dn", p.saturation_dn,
+            Help{"number at which values are clipped, or the highest number"}),
+      Field("adc_bits", p.adc_bits),
+      Field("buckets", p.buckets, Help{"buckets per raw number: 2 if differences are read"}),
+      Field("reduced_chi2", p.reduced_chi2,
+            Help{"misfit of the line: near 1 if the model is valid"}),
+      Field("points", p.points, FieldMark::as_object), Field("notes", p.notes));
+}
 
 /// Computes gain and read noise by the photon transfer method (EMVA 1288) from pairs of consecutive
 /// frames, which must have the same light. The black level is the mean of the dark frames, or

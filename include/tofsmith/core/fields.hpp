@@ -34,7 +34,7 @@ enum class FieldMark : unsigned {
   apart = 2,          ///< elsewhere in the JSON document
   in_place = 4,       ///< its fields are part of the enclosing object
   without_error = 8,  ///< an estimate whose standard error is not reported
-  as_object = 16,     ///< an estimate that is a separate object in JSON
+  as_object = 16,     ///< an estimate, or each item of a list, that is a separate object
   may_be_null = 32,   ///< in JSON
   bound = 64          ///< an error bound, which some tables omit
 };
