@@ -99,7 +99,7 @@ void add_calibrate_noise(CLI::App& calibrate, Session& session) {
   command->add_option("--code", arguments->code,
                       "code that the camera used; required if the camera reads out differences "
                       "of taps");
-  options.add("averaged", "--averaged");
+  options.add("averaged");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   arguments->output.add_to(*command);

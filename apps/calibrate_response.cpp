@@ -117,11 +117,11 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
       ->check(one_of({"auto", "pulse", "step"}))
       ->capture_default_str();
   const FieldOptions fields(*command, arguments->record);
-  fields.add("column", "--column");
+  fields.add("column");
   fields.add("time_step_s", "--time-step");
   command->add_option("--time-unit", arguments->time_unit, "unit of the time column")
       ->check(one_of({"s", "ms", "us", "ns", "ps"}));
-  fields.add("decimal", "--decimal");
+  fields.add("decimal");
   command
       ->add_option("--arm", arguments->arm,
                    "measured part of the camera; system: light source and sensor together, stored "

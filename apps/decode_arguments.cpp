@@ -231,9 +231,7 @@ void FilterArguments::add_to(CLI::App& command) {
                       "while the pixel does not change (default: off)")
           ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
           ->transform(number_in("", true));
-  add_field_option(command, time_options_, "look_ahead", "--look-ahead")
-      ->needs(time_filter)
-      ->group(for_experts);
+  add_field_option(command, time_options_, "look_ahead")->needs(time_filter)->group(for_experts);
   add_settings<TimeFilterOptions>(command, "--time-filter-set", "the temporal filter", time_filter,
                                   time_settings_);
 }

@@ -326,9 +326,9 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
           "describes; or -: standard input, with --raw-format and -o -")
       ->required();
   const FieldOptions request(command, arguments.request);
-  CLI::Option* const layout = request.add("layout", "--layout");
-  CLI::Option* const dataset = request.add("dataset", "--dataset")->group(for_experts);
-  request.add("raw_format", "--raw-format")->excludes(layout)->excludes(dataset);
+  CLI::Option* const layout = request.add("layout");
+  CLI::Option* const dataset = request.add("dataset")->group(for_experts);
+  request.add("raw_format")->excludes(layout)->excludes(dataset);
   command.add_option("--code", arguments.code,
                      "code that the camera used: a family, a code file or a measured table "
                      "(.npz .npy .csv) (default: the .code.json next to the raw frames)");
@@ -336,30 +336,30 @@ void add_recording_options(CLI::App& command, DecodeArguments& arguments) {
 
 /// Options of maps and stray light.
 void add_map_options(const FieldOptions<DecodeRequest>& request) {
-  request.add("offset_map", "--offset-map");
-  request.add("offset_m", "--offset-m")->group(for_experts);
-  request.add("gain_map", "--gain-map")->group(for_experts);
-  request.add("stray_light", "--stray-light")->group(for_experts);
+  request.add("offset_map");
+  request.add("offset_m")->group(for_experts);
+  request.add("gain_map")->group(for_experts);
+  request.add("stray_light")->group(for_experts);
 }
 
 /// Options that select and combine frames.
 void add_frame_options(const FieldOptions<DecodeRequest>& request) {
   request.add("min_depth_m", "--min-depth");
   request.add("max_depth_m", "--max-depth");
-  request.add("mixed", "--mixed");
-  request.add("average", "--average");
-  request.add("hdr", "--hdr")->group(for_experts);
-  request.add("averaged", "--averaged")->group(for_experts);
-  request.add("sliding", "--sliding");
-  request.add("frame", "--frame")->group(for_experts);
+  request.add("mixed");
+  request.add("average");
+  request.add("hdr")->group(for_experts);
+  request.add("averaged")->group(for_experts);
+  request.add("sliding");
+  request.add("frame")->group(for_experts);
 }
 
 /// Thresholds of the statuses.
 void add_status_options(const FieldOptions<DecodeOptions>& options) {
-  options.add("low_signal_sigma", "--low-signal-sigma")->group(for_experts);
-  options.add("min_confidence", "--min-confidence")->group(for_experts);
-  options.add("false_alarm_rate", "--false-alarm-rate")->group(for_experts);
-  options.add("model_error_percent", "--model-error-percent")->group(for_experts);
+  options.add("low_signal_sigma")->group(for_experts);
+  options.add("min_confidence")->group(for_experts);
+  options.add("false_alarm_rate")->group(for_experts);
+  options.add("model_error_percent")->group(for_experts);
 }
 
 /// Options of the output.
@@ -376,11 +376,11 @@ void add_output_options(CLI::App& command, DecodeArguments& arguments) {
                   "(H,W,2) with x/z and y/z, or (H,W,3) with directions")
       ->group(for_experts);
   const FieldOptions request(command, arguments.request);
-  request.add("all_points", "--all-points")->group(for_experts);
-  request.add("view_deg", "--view-deg")->group(for_experts);
-  request.add("undistort", "--undistort")->group(for_experts);
-  request.add("stack", "--stack");
-  request.add("memory_mb", "--memory-mb")->group(for_experts);
+  request.add("all_points")->group(for_experts);
+  request.add("view_deg")->group(for_experts);
+  request.add("undistort")->group(for_experts);
+  request.add("stack");
+  request.add("memory_mb")->group(for_experts);
 }
 
 }  // namespace
@@ -399,8 +399,8 @@ void add_decode_command(CLI::App& app, Session& session) {
   arguments->method.add_to(*command);
   arguments->multipath.add_to(*command);
   arguments->device.add_to(*command);
-  request.add("outputs", "--outputs")->allow_extra_args();
-  request.add("kind", "--kind");
+  request.add("outputs")->allow_extra_args();
+  request.add("kind");
   arguments->filter.add_to(*command);
   add_frame_options(request);
   add_status_options(FieldOptions(*command, arguments->options));

@@ -185,8 +185,8 @@ void add_demo_command(CLI::App& app, Session& session) {
   command->add_option("--depth", arguments->scene.scene, scene_help)->capture_default_str();
   add_scene_options(*command, arguments->scene);
   const FieldOptions options(*command, arguments->options);
-  options.add("seed", "--seed");
-  options.add("trials", "--trials");
+  options.add("seed");
+  options.add("trials");
   add_effort(*command, arguments->effort);
   command->callback([arguments, &session] {
     session.directory = arguments->output;

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -40,6 +42,13 @@ template <typename Single>
 inline constexpr bool is_option_value =
     HasWords<Single> || std::is_arithmetic_v<Single> || std::is_same_v<Single, std::string> ||
     std::is_same_v<Single, std::filesystem::path>;
+
+/// Returns the option of a field: "--split-exposures".
+inline std::string option_of(std::string_view field) {
+  std::string option(field);
+  std::ranges::replace(option, '_', '-');
+  return "--" + option;
+}
 
 template <typename Enum>
 std::vector<std::string> texts_of_words() {
@@ -100,17 +109,17 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
 }
 
 /// Adds the option of one field of a described struct.
-/// @param field  its name
+/// @param field   its name
+/// @param option  default: the name with dashes
 template <typename Options>
 CLI::Option* add_field_option(CLI::App& command, Options& options, std::string_view field,
-                              const std::string& option) {
+                              const std::string& option = "") {
   CLI::Option* added = nullptr;
   for_each_field(options, [&](const auto& each) {
-    using Value = std::remove_cvref_t<decltype(each.value)>;
-    using Single = SingleValue<Value>;
-    if constexpr (detail::is_option_value<Single>) {
-      if (each.name == field) added = add_option_of(command, each, option);
-    }
+    using Single = SingleValue<std::remove_cvref_t<decltype(each.value)>>;
+    if constexpr (detail::is_option_value<Single>)
+      if (each.name == field)
+        added = add_option_of(command, each, option.empty() ? detail::option_of(field) : option);
   });
   TOFSMITH_ASSERT_EQ(added != nullptr, true);  // a field of a type that options support
   return added;
@@ -137,8 +146,19 @@ class FieldOptions {
  public:
   FieldOptions(CLI::App& command, Options& options) : command_(command), options_(options) {}
 
-  CLI::Option* add(std::string_view field, const std::string& option) const {
+  CLI::Option* add(std::string_view field, const std::string& option = "") const {
     return add_field_option(command_, options_, field, option);
+  }
+  /// Adds the options that the command does not have yet.
+  /// @param but  fields without an option, or with an option of another name
+  void add_others(std::initializer_list<std::string_view> but) const {
+    for_each_field(options_, [&](const auto& each) {
+      using Single = SingleValue<std::remove_cvref_t<decltype(each.value)>>;
+      if constexpr (detail::is_option_value<Single>)
+        if (std::ranges::find(but, each.name) == but.end() &&
+            !command_.get_option_no_throw(detail::option_of(each.name)))
+          add(each.name);
+    });
   }
 
  private:

@@ -71,8 +71,7 @@ void OperatingMultipathArguments::add_to(CLI::App& command, OptimizeOptions& opt
                               "operating.multipath.weight, otherwise {})",
                               OperatingMultipath().weight))
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
-  two_return_weight_ =
-      add_field_option(command, options, "two_return_weight", "--two-return-weight");
+  two_return_weight_ = add_field_option(command, options, "two_return_weight");
 }
 
 void OperatingMultipathArguments::apply_to(Camera& camera) const {
@@ -183,24 +182,25 @@ void add_design_command(CLI::App& app, Session& session) {
   arguments->camera.add_to(*command);
   arguments->camera.add_positional(*command);
   const FieldOptions options(*command, arguments->options);
-  options.add("method", "--method");
+  options.add("method");
   command->add_option("--target", arguments->target,
                       "target correlation functions to factorize: a family, a code file or a "
                       "table (.csv .npy .npz) (default: Hamiltonian codes)");
   command->add_flag("--normalize", arguments->normalize,
                     "rescale the columns of a target table to [0, 1]");
-  options.add("exposures", "--exposures")->allow_extra_args();
+  options.add("exposures")->allow_extra_args();
   add_effort(*command, arguments->effort);
-  options.add("atlas_cameras", "--atlas-cameras");
+  options.add("atlas_cameras");
   arguments->camera.add_key_option(*command, "sensor.decoder", "--decoder")->group(for_experts);
-  options.add("robust", "--robust");
-  options.add("split_exposures", "--split-exposures");
+  options.add("robust");
+  options.add("split_exposures");
   arguments->multipath.add_to(*command, arguments->options.optimize);
-  options.add("seed", "--seed");
-  options.add("trials", "--trials");
+  options.add("seed");
+  options.add("trials");
   options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   add_field_option(*command, arguments->options.search, "metric", "--search-metric")
       ->group(for_experts);
+  options.add_others({"best_rotation", "search_trials", "outlier_threshold_m"});
   command->add_option(
       "-o,--output", arguments->output,
       "output directory for codes and report; repeating the command resumes an interrupted run "

@@ -432,10 +432,10 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   arguments->camera.add_key_option(*command, "operating.velocity_m_per_s", "--velocity");
   arguments->camera.add_key_option(*command, "operating.interference.cameras", "--interference");
   const FieldOptions options(*command, arguments->options);
-  options.add("trials", "--trials");
-  options.add("target_standard_error", "--target-standard-error")->transform(share_or_percentage());
-  options.add("max_trials", "--max-trials")->group(for_experts);
-  options.add("seed", "--seed");
+  options.add("trials");
+  options.add("target_standard_error")->transform(share_or_percentage());
+  options.add("max_trials")->group(for_experts);
+  options.add("seed");
   arguments->method.add_to(*command);
   options.add("outlier_threshold_m", "--outlier-threshold")->group(for_experts);
   command
@@ -444,7 +444,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
           "true depths on bins only (underestimates errors; for comparison with other tools)")
       ->group(for_experts);
   options.add("sub_bin", "!--no-sub-bin")->group(for_experts);
-  options.add("clip_to_open_sensor", "--clip-to-open-sensor")->group(for_experts);
+  options.add("clip_to_open_sensor")->group(for_experts);
   command
       ->add_flag("--best-rotation", arguments->best_rotation,
                  "shift the depth origin of each code to minimize its linear error")

@@ -104,19 +104,19 @@ void add_export_command(CLI::App& app, Session& session) {
   command->add_option("CODE", arguments->code, "family or code file (.code.json .npz .csv)")
       ->required();
   const FieldOptions fields(*command, options);
-  fields.add("format", "--format")->required();
-  fields.add("variant", "--variant");
+  fields.add("format")->required();
+  fields.add("variant");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
-  fields.add("samples", "--samples");
-  fields.add("bits", "--bits");
+  fields.add("samples");
+  fields.add("bits");
   fields.add("sample_rate_hz", "--rate");
   fields.add("edge_grid_s", "--edge-grid");
-  fields.add("periods", "--periods");
+  fields.add("periods");
   add_volts_option(*command, options);
   const FieldOptions evaluate(*command, arguments->evaluate);
-  evaluate.add("trials", "--trials")->description("trials per operating point");
-  evaluate.add("seed", "--seed");
+  evaluate.add("trials")->description("trials per operating point");
+  evaluate.add("seed");
   command->add_flag("--no-loss", arguments->no_loss,
                     "do not evaluate the depth error with the exported waveforms");
   command

@@ -38,7 +38,7 @@ class MultipathArguments {
  public:
   void add_to(CLI::App& command) {
     const FieldOptions fields(command, options_);
-    fields.add("threshold", "--threshold")->group(for_experts);
+    fields.add("threshold")->group(for_experts);
     fields.add("shortest_delay_m", "--shortest-delay")->group(for_experts);
     fields.add("longest_delay_m", "--longest-delay")->check(positive_number())->group(for_experts);
     fields.add("tail_m", "--tail-length")->group(for_experts);

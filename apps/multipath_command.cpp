@@ -115,8 +115,8 @@ void add_scene(CLI::App& command, MultipathCommandArguments& arguments) {
                          "also evaluate a scene with light reflected between its surfaces: "
                          "built-in scene (see `tofsmith scene`), scene file (.toml) or mesh; "
                          "uses the first CODE and the highest of --signals");
-  add_field_option(command, arguments.scene, "width", "--width")->needs(scene);
-  add_field_option(command, arguments.scene, "height", "--height")->needs(scene);
+  add_field_option(command, arguments.scene, "width")->needs(scene);
+  add_field_option(command, arguments.scene, "height")->needs(scene);
   command.add_option("--bounce-rays", arguments.bounce.rays, "rays per pixel for bounced light")
       ->check(integer_in(16, 65536))
       ->capture_default_str()
@@ -142,9 +142,9 @@ void add_multipath_command(CLI::App& app, Session& session) {
   fields.add("tail_m", "--tails");
   fields.add("signal_e_per_s", "--signals");
   fields.add("ambient_e_per_s", "--ambient");
-  add_field_option(*command, options.decoding, "threshold", "--threshold")->group(for_experts);
-  fields.add("trials", "--trials");
-  fields.add("seed", "--seed");
+  add_field_option(*command, options.decoding, "threshold")->group(for_experts);
+  fields.add("trials");
+  fields.add("seed");
   add_scene(*command, *arguments);
   arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,

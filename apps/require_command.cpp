@@ -154,11 +154,11 @@ void add_require_command(CLI::App& app, Session& session) {
       ->allow_extra_args(false)
       ->check(one_of({"bandwidth", "power", "exposure"}));
   const FieldOptions options(*command, arguments->options);
-  options.add("max_factor", "--max-factor");
-  options.add("exact", "--exact");
-  options.add("effort", "--effort");
-  options.add("trials", "--trials");
-  options.add("seed", "--seed");
+  options.add("max_factor");
+  options.add("exact");
+  options.add("effort");
+  options.add("trials");
+  options.add("seed");
   options.add("map", "!--no-map");
   command->add_option("-o,--output", arguments->output,
                       "write a page (.html), all numbers (.json), or a directory with page, "

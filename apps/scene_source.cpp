@@ -16,13 +16,13 @@ namespace tofsmith::apps {
 
 void add_scene_options(CLI::App& command, SceneSource& source) {
   const FieldOptions fields(command, source);
-  fields.add("image", "--image");
-  fields.add("ambient_image", "--ambient-image")->group(for_experts);
-  fields.add("linear_image", "--linear-image")->group(for_experts);
-  fields.add("kind", "--kind");
-  fields.add("width", "--width");
-  fields.add("height", "--height");
-  fields.add("scale_m", "--scale-m")->group(for_experts);
+  fields.add("image");
+  fields.add("ambient_image")->group(for_experts);
+  fields.add("linear_image")->group(for_experts);
+  fields.add("kind");
+  fields.add("width");
+  fields.add("height");
+  fields.add("scale_m")->group(for_experts);
 }
 
 std::string lens_setting(const PinholeView& view) {

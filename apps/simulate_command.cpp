@@ -404,8 +404,8 @@ void add_simulate_command(CLI::App& app, Session& session) {
   const FieldOptions options(*command, arguments->options);
   options.add("reference_distance_m", "--reference-distance")->group(for_experts);
   options.add("falloff", "!--no-falloff")->group(for_experts);
-  options.add("frames", "--frames");
-  options.add("seed", "--seed");
+  options.add("frames");
+  options.add("seed");
   command
       ->add_option("-o,--output", arguments->output,
                    "raw frames (.npy .npz); with several scenes, a directory")

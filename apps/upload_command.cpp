@@ -166,23 +166,23 @@ void run(UploadArguments& arguments, const Session& session) {
 void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
   ExportOptions& options = arguments.options;
   const FieldOptions fields(command, options);
-  fields.add("samples", "--samples");
+  fields.add("samples");
   fields.add("sample_rate_hz", "--rate");
   fields.add("edge_grid_s", "--edge-grid")->group(for_experts);
-  fields.add("periods", "--periods")->group(for_experts);
+  fields.add("periods")->group(for_experts);
   add_volts_option(command, options);
   command.add_option("--load", arguments.load, "load impedance in ohms, or inf")
       ->capture_default_str();
   const FieldOptions selection(command, arguments.selection);
-  selection.add("exposure", "--exposure");
-  selection.add("tap", "--tap");
-  selection.add("all", "--all");
+  selection.add("exposure");
+  selection.add("tap");
+  selection.add("all");
 }
 
 void add_family_options(CLI::App& command, UploadArguments& arguments) {
   const FieldOptions request(command, arguments.request);
-  request.add("true_arb", "--true-arb")->group(for_experts);
-  request.add("wave_header", "--wave-header")->group(for_experts);
+  request.add("true_arb")->group(for_experts);
+  request.add("wave_header")->group(for_experts);
   command.add_option("--filter", arguments.filter, "output filter; only with a Keysight")
       ->check(one_of({"step", "normal", "off"}))
       ->capture_default_str()
@@ -218,7 +218,7 @@ void add_upload_command(CLI::App& app, Session& session) {
   const FieldOptions request(*command, arguments->request);
   request.add("read_back", "!--no-read-back")->group(for_experts);
   request.add("reset", "!--no-reset")->group(for_experts);
-  request.add("output_on", "--output-on");
+  request.add("output_on");
   command->add_flag("--dry-run", arguments->dry_run,
                     "print the commands for --model without connecting");
   command->callback([arguments, &session] { run(*arguments, session); });

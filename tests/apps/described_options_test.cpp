@@ -57,11 +57,9 @@ class OvenCommand {
  public:
   OvenCommand() {
     const FieldOptions options(app_, oven);
-    for_each_field(oven, [&](const auto& field) {
-      std::string option(field.name);
-      std::ranges::replace(option, '_', '-');
-      options.add(field.name, option == "fan" ? "!--no-fan" : "--" + option);
-    });
+    options.add("trays");
+    options.add("fan", "!--no-fan");
+    options.add_others({"fan"});
   }
 
   std::string parse(std::vector<std::string> arguments) {
