@@ -168,7 +168,7 @@ DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camer
   if (options.unit == DelayUnit::second) options.unit_scale = seconds_per_unit(arguments.unit);
   options.table.keep_end_point = arguments.keep_end_point;
   if (!arguments.axes.empty()) options.table.axes = parse_table_axes(arguments.axes);
-  if (const auto order = arguments.taps.tap_order())
+  if (const auto order = arguments.taps.file.tap_order)
     options.table.layout = {.taps = camera.sensor.taps, .order = order};
   try {
     return read_delay_sweep(arguments.file(), options);
@@ -200,7 +200,7 @@ std::vector<CodeSet> candidates(const CorrelationArguments& arguments, const Cam
   Camera open = camera;
   open.light.peak_factor = 1e6;
   for (const std::string& name : arguments.codes)
-    codes.push_back(load_code(name, open, arguments.taps.file_options()));
+    codes.push_back(load_code(name, open, arguments.taps.file));
   return codes;
 }
 
@@ -299,7 +299,7 @@ void run(CorrelationArguments& arguments, const Session& session) {
                             arguments.camera.name,
                             arguments.output,
                             arguments.codes,
-                            arguments.taps.file_options(),
+                            arguments.taps.file,
                             base},
                            session);
     return;

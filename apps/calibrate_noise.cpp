@@ -66,7 +66,7 @@ void run(NoiseArguments& arguments, const Session& session) {
   try {
     if (reads_differences) {
       const CodeSet code =
-          load_camera_code(arguments.code, base, arguments.taps.file_options_for({arguments.code}));
+          load_camera_code(arguments.code, base, arguments.taps.file_for({arguments.code}));
       found = photon_transfer(levels, dark, make_decoding_table(ForwardModel(code, base), base),
                               options);
     } else {

@@ -106,7 +106,7 @@ void run(TemperatureArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   arguments.output.check(session);
   const CodeSet code =
-      load_camera_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code}));
+      load_camera_code(arguments.code, camera, arguments.taps.file_for({arguments.code}));
   const RawFrames frames = read_raw_frames(arguments.file);
   const ReadTemperatures read = read_temperatures(arguments);
   TemperatureDrift found;

@@ -174,9 +174,9 @@ void add_codes_command(CLI::App& app, Session& session) {
     const Camera camera = arguments->camera.load();
     require_no_measured_table(arguments->name);
     const CodeSet code =
-        load_code(arguments->name, camera, arguments->taps.file_options_for({arguments->name}));
+        load_code(arguments->name, camera, arguments->taps.file_for({arguments->name}));
     if (!arguments->output.empty())
-      write(session, code, camera, arguments->output, arguments->taps.tap_order());
+      write(session, code, camera, arguments->output, arguments->taps.file.tap_order);
     show(session, code, camera);
     if (!arguments->output.empty()) session.say(fmt::format("wrote {}", arguments->output));
   });

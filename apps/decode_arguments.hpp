@@ -35,11 +35,7 @@ class TableArguments {
                       const TapArguments& taps) const;
 
  private:
-  std::optional<double> range_m_;
-  std::string ambient_, axes_;
-  std::vector<int> order_;
-  bool reversed_ = false;
-  bool keep_end_point_ = false;
+  DecodingTableOptions options_;
 };
 
 /// Option `--device`. OpenCL is loaded only if a device other than cpu is named.

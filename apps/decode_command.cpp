@@ -273,8 +273,8 @@ void run(DecodeArguments& arguments, Session& session) {
     return decode_pipe(request, *backend, session);
   }
   const DecodedRecording result = decode_all(request, *backend, session);
-  std::vector<std::string> notes = recording_conflicts(arguments.raw.front(), arguments.code,
-                                                       camera, arguments.taps.file_options());
+  std::vector<std::string> notes =
+      recording_conflicts(arguments.raw.front(), arguments.code, camera, arguments.taps.file);
   notes.insert(notes.end(), source.notes.begin(), source.notes.end());
   notes.insert(notes.end(), result.notes.begin(), result.notes.end());
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "number_checks.hpp"
-#include "tap_arguments.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
 

@@ -401,7 +401,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (!arguments.perturb.empty()) perturbed = parse_perturbations(arguments.perturb);
   if (perturbed)
     static_cast<void>(perturbations(camera, *perturbed));  // validates before long work
-  const CodeFileOptions file_options = arguments.taps.file_options_for(arguments.codes);
+  const CodeFileOptions file_options = arguments.taps.file_for(arguments.codes);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_camera_code(name, camera, file_options));

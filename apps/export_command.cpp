@@ -65,9 +65,9 @@ void run(ExportArguments& arguments, const Session& session) {
   if (one_file) session.check_output(request.output);
   const Camera camera = arguments.camera.load();
   require_no_measured_table(arguments.code);
-  const ExportedCode exported = write_export(
-      load_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code})), camera,
-      request, terminal_progress("evaluating"));
+  const ExportedCode exported =
+      write_export(load_code(arguments.code, camera, arguments.taps.file_for({arguments.code})),
+                   camera, request, terminal_progress("evaluating"));
   session.print_document(export_document(exported));
   say_report(session, exported);
   const std::size_t scripts = exported.scripts.size();

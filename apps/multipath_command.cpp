@@ -90,7 +90,7 @@ void run(const MultipathCommandArguments& arguments, const Session& session) {
       throw UsageError(fmt::format("-o {}: unknown extension; expected .json or .html", output));
     session.check_output(output);
   }
-  const CodeFileOptions file_options = arguments.taps.file_options_for(arguments.codes);
+  const CodeFileOptions file_options = arguments.taps.file_for(arguments.codes);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_camera_code(name, camera, file_options));

@@ -11,8 +11,10 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "session.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 
@@ -69,6 +71,18 @@ inline CLI::Validator number_that(const std::string& rule, std::function<bool(do
                        : fmt::format("found {}; must be {}", text, rule);
           },
           rule};
+}
+
+/// Returns a validator that accepts one of these words and suggests similar words for others.
+inline CLI::Validator one_of(const std::vector<std::string>& words) {
+  const CLI::Validator member = CLI::IsMember(words);
+  CLI::Validator check = member;
+  return check.operation([member, words](std::string& word) {
+    std::string problem = member(word);
+    if (problem.empty()) return problem;
+    const std::string near = nearest_word(word, words);
+    return near.empty() ? problem : problem + "; did you mean " + near + "?";
+  });
 }
 
 inline CLI::Validator integer_in(int min, int max) {

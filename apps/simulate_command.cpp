@@ -227,8 +227,8 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
                               usual.ambient_e_per_s),
        .capture = arguments.options,
        .shard = parse_shard(arguments.shard)},
-      load_camera_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code})),
-      camera, session);
+      load_camera_code(arguments.code, camera, arguments.taps.file_for({arguments.code})), camera,
+      session);
 }
 
 /// Rejects options that are only valid with several scenes.
@@ -314,7 +314,7 @@ void run(SimulateArguments& arguments, Session& session) {
   arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
   const CodeSet code =
-      load_camera_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code}));
+      load_camera_code(arguments.code, camera, arguments.taps.file_for({arguments.code}));
   const OutputPolicy policy = check_outputs(arguments, code, session);
   const LoadedScene scene = scene_of(arguments.scene, camera);
   check_truth(arguments, scene, camera);

@@ -155,8 +155,7 @@ void run(UploadArguments& arguments, const Session& session) {
   if (!arguments.model.empty()) as_usage([&] { return generator_model(arguments.model); });
   const Camera camera = arguments.camera.load();
   require_no_measured_table(arguments.code);
-  const CodeSet code =
-      load_code(arguments.code, camera, arguments.taps.file_options_for({arguments.code}));
+  const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_for({arguments.code}));
   if (arguments.dry_run) return show_dry_run(arguments, code, camera, session);
   const nlohmann::ordered_json request = upload_request(arguments, code, camera, session);
   run_python_module("tofsmith._upload_command",

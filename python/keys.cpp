@@ -14,6 +14,7 @@
 #include "tofsmith/design/candidate.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/decode_recording.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/simulate/interference_error.hpp"
 #include "tofsmith/simulate/motion_error.hpp"
@@ -97,8 +98,10 @@ nlohmann::ordered_json results() {
 int main() {
   const nlohmann::ordered_json options = {
       {"CaptureOptions", fields_list<CaptureOptions>()},
+      {"CodeFileOptions", fields_list<CodeFileOptions>()},
       {"DecodeOptions", fields_list<DecodeOptions>()},
       {"DecodeRequest", fields_list<DecodeRequest>()},
+      {"DecodingTableOptions", fields_list<DecodingTableOptions>()},
       {"DesignOptions", fields_list<DesignOptions>()},
       {"EvaluateOptions", fields_list<EvaluateOptions>()},
       {"ExportOptions", fields_list<ExportOptions>()},

@@ -35,7 +35,8 @@ ELSEWHERE = {"CaptureOptions": {"signal_e_per_s", "ambient_e_per_s"},
 PARTS = {"StreamOptions": ("DecodeRequest", {"layout", "dataset", "all_points", "frame", "stack",
                                              "memory_mb"})}
 # Classes for functions with the fields of several structs.
-JOINED = {"UploadOptions": ("UploadSelection", "UploadRequest")}
+JOINED = {"TableOptions": ("CodeFileOptions", "DecodingTableOptions"),
+          "UploadOptions": ("UploadSelection", "UploadRequest")}
 # Texts that name files.
 FILES = {"image", "ambient_image"}
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "choice": "str",

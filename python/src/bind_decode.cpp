@@ -216,20 +216,7 @@ DecodingTable measured_table(const Doubles& correlation, const Camera& camera,
 
 py::tuple load_table(const std::string& code, const Camera& camera, const py::dict& values) {
   DecodingTableOptions options;
-  std::string tap_order, ambient, axes;
-  OptionReader reader(values, "");
-  reader.value("taps", options.file.taps)
-      .value("tap_order", tap_order)
-      .value("range_m", options.range_m)
-      .value("ambient", ambient)
-      .value("axes", axes)
-      .value("keep_end_point", options.keep_end_point)
-      .value("order", options.order)
-      .value("reversed", options.reversed);
-  reader.finish();
-  if (!tap_order.empty()) options.file.tap_order = parse_tap_order(tap_order);
-  if (!ambient.empty()) options.ambient = parse_measured_ambient(ambient);
-  if (!axes.empty()) options.axes = parse_table_axes(axes);
+  OptionReader(values, "").fields(options.file).fields(options).finish();
   LoadedDecodingTable loaded = load_decoding_table(code, camera, options);
   return py::make_tuple(std::move(loaded.table), loaded.name, loaded.notes);
 }

@@ -5,8 +5,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from typing import Any, Optional
+from typing import Any, Optional, Unpack
 
 import numpy.typing as npt
 
@@ -15,6 +14,8 @@ from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Path
 from ._code import CodeLike, code_of
 from ._notebook import table_picture
+from ._option_fields import TableOptions
+from ._options import takes
 
 
 class DecodingTable:
@@ -45,19 +46,12 @@ class DecodingTable:
         return table
 
     @classmethod
+    @takes(TableOptions)
     def load(
         cls,
         code: Path,
         camera: CameraLike,
-        *,
-        range_m: Optional[float] = None,
-        ambient: Optional[str] = None,
-        axes: Optional[str] = None,
-        keep_end_point: bool = False,
-        taps: Optional[int] = None,
-        tap_order: Optional[str] = None,
-        order: Optional[Sequence[int]] = None,
-        reversed: bool = False,
+        **options: Unpack[TableOptions],
     ) -> DecodingTable:
         """Loads the table of a family, a code file, or a file of measured correlation functions, as
         `tofsmith decode --code`.
@@ -68,23 +62,8 @@ class DecodingTable:
             Name of a family, or a file: .json or .npz for a code; .npz, .npy or .csv for measured
             tables.
         camera : Camera or its name
-        range_m : float, optional
-            Unambiguous range of a measured table [m]; None: the camera's.
-        ambient : {"equal", "mean", "none"}, optional
-            Response of the columns of a measured table to constant light; None: from the file, or
-            equal.
-        axes : {"nk", "kn"}, optional
-            Axes of a measured table: (N, K) or (K, N).
-        keep_end_point : bool
-            Keep a last sample of a measured table that equals the first.
-        taps : int, optional
-            Taps of an .npz file; None: the camera's.
-        tap_order : {"blocked", "interleaved"}, optional
-            Order of the columns of an .npz file; not inferred.
-        order : sequence of int, optional
-            Order in which the exposures of the code or table occur in frames.
-        reversed : bool
-            Delay runs in the opposite direction to code, camera or table.
+        **options
+            As in TableOptions.
 
         Returns
         -------
@@ -98,20 +77,11 @@ class DecodingTable:
         ValueError
             If options for measured tables are given for a code.
         """
-        options = {
-            "range_m": range_m,
-            "ambient": ambient,
-            "axes": axes,
-            "keep_end_point": bool(keep_end_point),
-            "taps": taps,
-            "tap_order": tap_order,
-            "order": None if order is None else [int(e) for e in order],
-            "reversed": bool(reversed),
-        }
         name = _check.path(code, "code")
-        handle, _, notes = _tofsmith.load_decoding_table(name, camera_of(camera)._handle, options)
+        handle, _, notes = _tofsmith.load_decoding_table(name, camera_of(camera)._handle,
+                                                         dict(options))
         table = cls._of(handle)
-        table._made = ("load", (name, camera_of(camera)), options)
+        table._made = ("load", (name, camera_of(camera)), dict(options))
         table._notes = notes
         table._inputs = [name]
         if isinstance(camera, (str, os.PathLike)):

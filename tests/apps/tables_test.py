@@ -133,7 +133,7 @@ class Tables(CommandLineTest):
                     code=2)
         for value in ("1e300", "0", "-1", "nan", "inf"):
             error = self.refuse([*decode, "d.npy", "--range-m", value], "--range-m",
-                                f"found {value}; must be > 0", code=2)
+                                f"found {value}; must be in (0, 1000000]", code=2)
             self.assertLess(len(error), 150)
         self.refuse([*decode, "d.png", "--range-m", "1e4"], "d.png", "found a depth of", "65.535 m",
                     ".npy")

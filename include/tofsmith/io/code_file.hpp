@@ -66,9 +66,18 @@ std::vector<std::byte> serialize_code_npz(const CodeSet& code,
                                           std::optional<TapOrder> order = std::nullopt);
 
 struct CodeFileOptions {
-  std::optional<int> taps;            ///< measurements per exposure; none: the camera's
-  std::optional<TapOrder> tap_order;  ///< required for several taps and several exposures
+  std::optional<int> taps;
+  std::optional<TapOrder> tap_order;
 };
+auto fields_of(ConstOrNot<CodeFileOptions> auto& o) {
+  return std::tuple(
+      Field("taps", o.taps, at_least(1), Help{"number of taps of an NPZ code"},
+            IfAbsent{"the camera's"}),
+      Field("tap_order", o.tap_order,
+            Help{"column order of an NPZ code: all exposures of the first tap first (blocked), or "
+                 "all taps of the first exposure first (interleaved); required for several taps "
+                 "and several exposures"}));
+}
 
 /// Reads a code by extension: .json, .npz (with `layout`) or .csv (with layout.is_signed).
 /// @throws IoError as parse_code_json() and parse_code_npz()

@@ -26,14 +26,33 @@ CodeSet load_camera_code(const std::string& code, const Camera& camera,
 /// Interpretation of a code file or measured table.
 struct DecodingTableOptions {
   CodeFileOptions file;
-  std::optional<double> range_m;           ///< of a measured table [m]; none: the camera's
-  std::optional<MeasuredAmbient> ambient;  ///< of a measured table; none: the file's, or equal
+  std::optional<double> range_m;
+  std::optional<MeasuredAmbient> ambient;
   std::optional<TableAxes> axes;
-  bool keep_end_point = false;  ///< keep a last sample that equals the first (measured tables)
-  /// Order of the exposures in the frames, as Playback::order; empty: as in the code or table.
-  std::vector<int> order;
-  bool reversed = false;  ///< delay increases in the opposite direction
+  bool keep_end_point = false;
+  std::vector<int> order;  ///< as Playback::order
+  bool reversed = false;
 };
+auto fields_of(ConstOrNot<DecodingTableOptions> auto& o) {
+  return std::tuple(
+      Field("file", o.file, FieldMark::apart),
+      Field("range_m", o.range_m, left_open(0, 1e6), Help{"unambiguous range of a measured table"},
+            IfAbsent{"the camera's"}),
+      Field("ambient", o.ambient,
+            Help{"ambient light in the columns of a measured table: equal in all columns, "
+                 "proportional to the mean of each column, or none"},
+            IfAbsent{"as in the file, otherwise equal"}),
+      Field("axes", o.axes,
+            Help{"axes of a measured table: samples x measurements (nk) or measurements x samples "
+                 "(kn)"},
+            IfAbsent{"nk, or kn if only kn fits; required if both fit and N <= K"}),
+      Field("keep_end_point", o.keep_end_point,
+            Help{"keep the last sample of a measured table even if it equals the first"}),
+      Field("order", o.order, Help{"order of the code's exposures in the frames, such as 0,3,2,1"},
+            IfAbsent{"the camera's playback.order, otherwise ascending"}),
+      Field("reversed", o.reversed,
+            Help{"reverse the direction of delay, for frames in which near and far are swapped"}));
+}
 
 /// A decoding table and its origin.
 struct LoadedDecodingTable {

@@ -154,6 +154,8 @@ CodeSet load_camera_code(const std::string& code, const Camera& camera,
 
 LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& camera,
                                         const DecodingTableOptions& options) {
+  check_fields(options);
+  check_fields(options.file);
   LoadedDecodingTable loaded;
   if (names_measured_table(code)) {
     loaded = load_measured(code, camera, options);
