@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibrate_output.hpp"
+#include "described_options.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
@@ -33,8 +34,8 @@ namespace {
 /// Arguments of `calibrate correlation --reference`.
 struct DepthCalibrationArguments {
   std::vector<std::filesystem::path> frames;
-  std::string raw_format;  ///< file; empty: .npy, .npz or .h5
-  std::string dataset;     ///< dataset of .npz and .h5; empty: "raw", or the only one
+  std::filesystem::path raw_format;  ///< empty: .npy, .npz or .h5
+  std::string dataset;
   bool reference_is_z = false;
   std::string reference, table, camera_name;
   CalibrateOutput output;
@@ -142,39 +143,27 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
 
 struct CorrelationArguments {
   std::vector<std::string> files;
-  std::string raw_format, dataset, shifts, dark, reference, reference_kind;
-  std::string table, offset_map, gain_map;
-  std::string unit = "s", decimal = "auto", axes;
+  DecodeRequest frames;
+  DelaySweepOptions sweep;
+  std::optional<DepthKind> reference_kind;
+  std::string dark, reference, table, offset_map, gain_map;
   std::vector<std::string> codes;
   std::optional<double> target_distance_m;
-  bool keep_end_point = false;
   CameraArguments camera;
   TapArguments taps;
   CalibrateOutput output;
 
   const std::string& file() const { return files.front(); }
-  std::optional<DepthKind> asked_reference_kind() const {
-    if (reference_kind.empty()) return std::nullopt;
-    return parse_depth_kind(reference_kind);
-  }
 };
 
 DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camera) {
-  DelaySweepOptions options{.shifts = arguments.shifts,
-                            .unit = parse_delay_unit(arguments.unit),
-                            .fundamental_frequency_hz = camera.fundamental_frequency_hz,
-                            .samples = camera.samples,
-                            .decimal = parse_decimal_mark(arguments.decimal)};
-  if (options.unit == DelayUnit::second) options.unit_scale = seconds_per_unit(arguments.unit);
-  options.table.keep_end_point = arguments.keep_end_point;
-  if (!arguments.axes.empty()) options.table.axes = parse_table_axes(arguments.axes);
-  if (const auto order = arguments.taps.file.tap_order)
-    options.table.layout = {.taps = camera.sensor.taps, .order = order};
+  DelaySweepOptions options = arguments.sweep;
+  options.tap_order = arguments.taps.file.tap_order;
   try {
-    return read_delay_sweep(arguments.file(), options);
+    return read_delay_sweep(arguments.file(), camera, options);
   } catch (const IoError& error) {
     const std::filesystem::path path = arguments.file();
-    if (!arguments.shifts.empty() || path.extension() != ".npy" || !exists(path)) throw;
+    if (!options.shifts.empty() || path.extension() != ".npy" || !exists(path)) throw;
     throw std::runtime_error(fmt::format(
         "{}; frames at several delays require --shifts, frames of known depth --reference",
         error.what()));
@@ -290,9 +279,9 @@ void run(CorrelationArguments& arguments, const Session& session) {
   check_outputs(arguments, session);
   if (!arguments.reference.empty()) {
     calibrate_by_reference({{arguments.files.begin(), arguments.files.end()},
-                            arguments.raw_format,
-                            arguments.dataset,
-                            depth_kind_of(arguments.reference, arguments.asked_reference_kind(),
+                            arguments.frames.raw_format,
+                            arguments.frames.dataset,
+                            depth_kind_of(arguments.reference, arguments.reference_kind,
                                           DepthKind::radial) == DepthKind::z,
                             arguments.reference,
                             arguments.table,
@@ -373,35 +362,23 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
                    "frames (F,H,W,K) with --shifts; with --reference, raw frames as for decode, "
                    "in one file or one file per measurement")
       ->required();
-  command->add_option(
-      "--shifts", arguments->shifts,
-      "delay of each frame of a stack: a text file with one delay per line, or .npy");
-  command
-      ->add_option("--shift-unit", arguments->unit,
-                   "unit of the delays: a unit of time, m of depth, bin, or period")
-      ->check(one_of({"s", "ms", "us", "ns", "ps", "m", "bin", "period"}))
-      ->capture_default_str();
+  const FieldOptions sweep(*command, arguments->sweep);
+  sweep.add("shifts");
+  sweep.add("unit", "--shift-unit");
   CLI::Option* reference = command->add_option(
       "--reference", arguments->reference,
       "calibrate with reference depth instead of delays: true depth in m (.npy .npz .exr .pfm "
       ".png; NaN or 0: unknown), or one distance per frame (.npy); requires --code");
-  command
-      ->add_option(
-          "--reference-kind", arguments->reference_kind,
-          "kind of --reference: depth along the ray (radial) or along the optical axis (z), "
-          "which is converted with the camera's [lens] (default: as stated in the file, "
-          "otherwise radial)")
-      ->needs(reference)
-      ->check(one_of({"radial", "z"}));
-  command
-      ->add_option("--raw-format", arguments->raw_format,
-                   "file that describes headerless raw frames (.raw.toml)")
+  add_option_of(*command,
+                Field("reference_kind", arguments->reference_kind,
+                      Help{"kind of --reference: depth along the ray (radial) or along the optical "
+                           "axis (z), which is converted with the camera's [lens]"},
+                      IfAbsent{"as stated in the file, otherwise radial"}),
+                "--reference-kind")
       ->needs(reference);
-  command
-      ->add_option("--dataset", arguments->dataset,
-                   "array of an .npz file or dataset of an .h5 file with the frames")
-      ->needs(reference)
-      ->group(for_experts);
+  const FieldOptions frames(*command, arguments->frames);
+  frames.add("raw_format")->needs(reference);
+  frames.add("dataset")->needs(reference)->group(for_experts);
   command->add_option("--dark", arguments->dark,
                       "frames with the light off, under the same ambient light as the sweep");
   command
@@ -414,19 +391,9 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
       ->add_option("--code", arguments->codes,
                    "codes to compare with: families or files (default: all built-in codes)")
       ->delimiter(',');
-  command->add_option("--decimal", arguments->decimal, "decimal mark of a text file")
-      ->check(one_of({"auto", "point", "comma"}))
-      ->capture_default_str()
-      ->group(for_experts);
-  command
-      ->add_option("--table-axes", arguments->axes,
-                   "axes of an array: samples x measurements (nk) or measurements x samples (kn)")
-      ->check(one_of({"nk", "kn"}))
-      ->group(for_experts);
-  command
-      ->add_flag("--keep-end-point", arguments->keep_end_point,
-                 "keep the last row of an array even if it equals the first")
-      ->group(for_experts);
+  sweep.add("decimal")->group(for_experts);
+  sweep.add("table_axes")->group(for_experts);
+  sweep.add("keep_end_point")->group(for_experts);
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   command->add_option("--table", arguments->table,

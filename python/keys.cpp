@@ -102,6 +102,7 @@ int main() {
       {"DecodeOptions", fields_list<DecodeOptions>()},
       {"DecodeRequest", fields_list<DecodeRequest>()},
       {"DecodingTableOptions", fields_list<DecodingTableOptions>()},
+      {"DelaySweepOptions", fields_list<DelaySweepOptions>()},
       {"DesignOptions", fields_list<DesignOptions>()},
       {"EvaluateOptions", fields_list<EvaluateOptions>()},
       {"ExportOptions", fields_list<ExportOptions>()},

@@ -19,24 +19,9 @@ namespace tofsmith::python {
 namespace {
 
 py::dict read_sweep(const std::string& path, const Camera& camera, const py::dict& values) {
-  DelaySweepOptions options{.fundamental_frequency_hz = camera.fundamental_frequency_hz,
-                            .samples = camera.samples};
-  std::string shifts, unit = "s", axes, order;
-  OptionReader(values, "")
-      .value("shifts", shifts)
-      .value("unit", unit)
-      .word("decimal", options.decimal, parse_decimal_mark)
-      .value("table_axes", axes)
-      .value("tap_order", order)
-      .value("keep_end_point", options.table.keep_end_point)
-      .finish();
-  options.shifts = shifts;
-  options.unit = parse_delay_unit(unit);
-  if (options.unit == DelayUnit::second) options.unit_scale = seconds_per_unit(unit);
-  if (!axes.empty()) options.table.axes = parse_table_axes(axes);
-  if (!order.empty())
-    options.table.layout = {.taps = camera.sensor.taps, .order = parse_tap_order(order)};
-  DelaySweep sweep = read_delay_sweep(path, options);
+  DelaySweepOptions options;
+  read_options(values, "", options);
+  DelaySweep sweep = read_delay_sweep(path, camera, options);
   py::dict dict;
   dict["delay_periods"] = adopt(std::move(sweep.delay_periods));
   dict["frames"] = adopt(std::move(sweep.frames));

@@ -7,7 +7,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union, overload
+from typing import Any, Optional, Union, Unpack, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,8 @@ from ._check import FloatArray, Path, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._depth_calibration import CalibratedDepth, calibrate_depth
+from ._option_fields import DelaySweepOptions
+from ._options import takes
 from ._result_fields import HarmonicRatio
 from ._results import Estimate, calibrated
 
@@ -147,16 +149,11 @@ class CalibratedCorrelation:
         )
 
 
+@takes(DelaySweepOptions)
 def read_delay_sweep(
     path: Path,
     camera: CameraLike,
-    *,
-    shifts: Optional[Path] = None,
-    unit: str = "s",
-    decimal: Optional[str] = None,
-    table_axes: Optional[str] = None,
-    tap_order: Optional[str] = None,
-    keep_end_point: bool = False,
+    **options: Unpack[DelaySweepOptions],
 ) -> DelaySweep:
     """Reads a delay sweep: a text with delay and K values per row, frames (F, H, W, K) with their
     shifts, or an array (N, K) with equal steps over one period.
@@ -167,33 +164,16 @@ def read_delay_sweep(
         .csv .txt .npy .npz
     camera : Camera or its name
         Its f0, N and taps are used.
-    shifts : str or path, optional
-        Delay of each frame: a text with one column, or .npy.
-    unit : {"s", "ms", "us", "ns", "ps", "m", "bin", "period"}
-        Unit of the delays.
-    decimal : {"auto", "point", "comma"}, optional
-    table_axes : {"nk", "kn"}, optional
-        Axes of an array: (N, K) or (K, N).
-    tap_order : {"blocked", "interleaved"}, optional
-        Order of the columns of an array with several taps.
-    keep_end_point : bool
-        Keep a last row of an array that equals the first.
+    **options
+        As in DelaySweepOptions.
 
     Raises
     ------
     OSError
         Naming the file and the position of the error.
     """
-    options = {
-        "shifts": None if shifts is None else _check.path(shifts, "shifts"),
-        "unit": unit,
-        "decimal": decimal,
-        "table_axes": table_axes,
-        "tap_order": tap_order,
-        "keep_end_point": keep_end_point,
-    }
     handle = camera_of(camera)._handle
-    return DelaySweep(**_tofsmith.read_delay_sweep(_check.path(path), handle, options))
+    return DelaySweep(**_tofsmith.read_delay_sweep(_check.path(path), handle, dict(options)))
 
 
 @overload

@@ -17,19 +17,17 @@
 namespace tofsmith {
 namespace {
 
-double periods_per_number(const DelaySweepOptions& options) {
-  const double f0_hz = options.fundamental_frequency_hz;
-  switch (options.unit) {
-    case DelayUnit::second:
-      return options.unit_scale * f0_hz;
+double periods_per_number(DelayUnit unit, const Camera& camera) {
+  switch (unit) {
     case DelayUnit::metre:
-      return options.unit_scale / unambiguous_range_m(f0_hz);
+      return 1.0 / unambiguous_range_m(camera.fundamental_frequency_hz);
     case DelayUnit::bin:
-      return options.unit_scale / options.samples;
+      return 1.0 / camera.samples;
     case DelayUnit::period:
-      break;
+      return 1.0;
+    default:
+      return seconds_per_unit(name_of(unit)) * camera.fundamental_frequency_hz;
   }
-  return options.unit_scale;
 }
 
 RawFrames frames_of(const Eigen::MatrixXd& values) {
@@ -51,7 +49,8 @@ std::vector<double> shifts_of(const std::filesystem::path& path, DecimalMark dec
   return {table.values.col(0).begin(), table.values.col(0).end()};
 }
 
-DelaySweep read_text(const std::filesystem::path& path, DelaySweepOptions options) {
+DelaySweep read_text(const std::filesystem::path& path, const Camera& camera,
+                     const DelaySweepOptions& options) {
   const NumberTable table = read_number_table(path, {.decimal = options.decimal, .min_columns = 2});
   if (table.values.cols() < 2)
     throw IoError(path.string(),
@@ -59,19 +58,20 @@ DelaySweep read_text(const std::filesystem::path& path, DelaySweepOptions option
                   "measurement");
   // A row counter may precede the delays.
   const Eigen::Index delay = counts_samples(table, 0) && is_named_time(table, 1) ? 1 : 0;
-  if (options.unit == DelayUnit::second && options.unit_scale == 1.0 && !table.names.empty())
+  double periods = periods_per_number(options.unit, camera);
+  if (options.unit == DelayUnit::second && !table.names.empty())
     if (const double unit_s = seconds_per_unit(table.names[static_cast<std::size_t>(delay)]);
         unit_s > 0.0)
-      options.unit_scale = unit_s;
+      periods = unit_s * camera.fundamental_frequency_hz;
   DelaySweep sweep;
   sweep.notes = table.notes;
-  for (const double value : table.values.col(delay))
-    sweep.delay_periods.push_back(value * periods_per_number(options));
+  for (const double value : table.values.col(delay)) sweep.delay_periods.push_back(value * periods);
   sweep.frames = frames_of(table.values.rightCols(table.values.cols() - 1 - delay));
   return sweep;
 }
 
-DelaySweep read_stack(const std::filesystem::path& path, const DelaySweepOptions& options) {
+DelaySweep read_stack(const std::filesystem::path& path, const Camera& camera,
+                      const DelaySweepOptions& options) {
   DelaySweep sweep;
   sweep.frames = read_raw_frames(path);
   const std::vector<double> shifts = shifts_of(options.shifts, options.decimal, sweep.notes);
@@ -83,21 +83,12 @@ DelaySweep read_stack(const std::filesystem::path& path, const DelaySweepOptions
     if (!std::isfinite(shifts[i]))
       throw IoError(fmt::format("{}[{}]", options.shifts.string(), i),
                     fmt::format("found {}; expected a finite number", shifts[i]));
-    sweep.delay_periods.push_back(shifts[i] * periods_per_number(options));
+    sweep.delay_periods.push_back(shifts[i] * periods_per_number(options.unit, camera));
   }
   return sweep;
 }
 
 }  // namespace
-
-DelayUnit parse_delay_unit(std::string_view word) {
-  if (word == "m") return DelayUnit::metre;
-  if (word == "bin") return DelayUnit::bin;
-  if (word == "period") return DelayUnit::period;
-  require(seconds_per_unit(word) > 0.0, "delay unit", word,
-          "must be s, ms, us, ns, ps, m, bin or period");
-  return DelayUnit::second;
-}
 
 void DelaySweep::validate() const {
   require(std::ssize(delay_periods) == frames.frames, "delays", delay_periods.size(),
@@ -109,18 +100,23 @@ void DelaySweep::validate() const {
   require_whole_period(delay_groups(delay_periods));
 }
 
-DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepOptions& options) {
+DelaySweep read_delay_sweep(const std::filesystem::path& path, const Camera& camera,
+                            const DelaySweepOptions& options) {
   DelaySweep sweep;
   if (is_number_table(path)) {
     if (!options.shifts.empty())
       throw IoError(
           path.string(),
           "is a table, whose first column is the delay; expected no separate list of shifts");
-    sweep = read_text(path, options);
+    sweep = read_text(path, camera, options);
   } else if (!options.shifts.empty()) {
-    sweep = read_stack(path, options);
+    sweep = read_stack(path, camera, options);
   } else {
-    const MeasuredTableFile file = read_measured_table(path, options.table);
+    const MeasuredTableFile file = read_measured_table(
+        path,
+        {.layout = {.taps = options.tap_order ? camera.sensor.taps : 1, .order = options.tap_order},
+         .axes = options.table_axes,
+         .keep_end_point = options.keep_end_point});
     sweep.frames = frames_of(file.table.correlation);
     sweep.notes = file.notes;
     const int count = file.table.samples();

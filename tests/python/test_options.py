@@ -31,8 +31,6 @@ nested = {
 keywords = [
     ("ResponseCalibrationOptions", "impulse_response.hpp", ts.calibrate_impulse_response,
      {"fundamental_frequency_hz", "samples"}),
-    ("DelaySweepOptions", "correlation_calibration.hpp", ts.read_delay_sweep,
-     {"unit_scale", "fundamental_frequency_hz", "samples", "table"}),
     ("CorrelationCalibrationOptions", "correlation_calibration.hpp", ts.calibrate_correlation,
      {"taps", "differences", "range_m", "exposure_s"}),
 ]

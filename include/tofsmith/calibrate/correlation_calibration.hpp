@@ -3,13 +3,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
@@ -22,11 +25,19 @@
 namespace tofsmith {
 
 /// Unit of delays.
-enum class DelayUnit { second, metre, bin, period };
-
-/// Parses "s", "m", "bin" or "period". For "ns" and other scaled units see seconds_per_unit().
-/// @throws InvalidArgument for other words
-DelayUnit parse_delay_unit(std::string_view word);
+enum class DelayUnit {
+  second,
+  millisecond,
+  microsecond,
+  nanosecond,
+  picosecond,
+  metre,
+  bin,
+  period,
+};
+constexpr std::array<std::string_view, 8> words_of(DelayUnit /*any*/) {
+  return {"s", "ms", "us", "ns", "ps", "m", "bin", "period"};
+}
 
 /// Frames of a flat target at known delays, in recording order.
 struct DelaySweep {
@@ -40,21 +51,34 @@ struct DelaySweep {
 
 /// Properties of a delay sweep that its file does not contain.
 struct DelaySweepOptions {
-  std::filesystem::path shifts;  ///< one column of text, or .npy
+  std::filesystem::path shifts;
   DelayUnit unit = DelayUnit::second;
-  double unit_scale = 1.0;                 ///< delays in the file are multiples of this, in `unit`
-  double fundamental_frequency_hz = 15e6;  ///< f0: a period is 1/f0, or c/(2 f0) in metres
-  int samples = 240;                       ///< N, number of bins per period
   DecimalMark decimal = DecimalMark::automatic;
-  MeasuredTableOptions table;  ///< for an array (N, K) without delays
+  std::optional<TableAxes> table_axes;
+  std::optional<TapOrder> tap_order;
+  bool keep_end_point = false;
 };
+auto fields_of(ConstOrNot<DelaySweepOptions> auto& o) {
+  return std::tuple(
+      Field("shifts", o.shifts,
+            Help{"delay of each frame of a stack: a text file with one delay per line, or .npy"}),
+      Field("unit", o.unit, Help{"unit of the delays: a unit of time, m of depth, bin, or period"}),
+      Field("decimal", o.decimal, Help{"decimal mark of a text file"}),
+      Field("table_axes", o.table_axes,
+            Help{"axes of an array: samples x measurements (nk) or measurements x samples (kn)"}),
+      Field("tap_order", o.tap_order, Help{"column order of an array with several taps"}),
+      Field("keep_end_point", o.keep_end_point,
+            Help{"keep the last row of an array even if it equals the first"}));
+}
 
 /// Reads a delay sweep:
 ///   - text: delay and K values per row,
 ///   - .npy or .npz of shape (F, H, W, K), together with a list of F shifts,
 ///   - .npy or .npz of shape (N, K): equal steps over one period, see read_measured_table().
+/// @param camera  defines periods, bins and taps
 /// @throws IoError if the contents do not match
-DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepOptions& options);
+DelaySweep read_delay_sweep(const std::filesystem::path& path, const Camera& camera,
+                            const DelaySweepOptions& options = {});
 
 /// Properties of the camera that recorded a sweep.
 struct CorrelationCalibrationOptions {
