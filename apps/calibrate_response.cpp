@@ -19,7 +19,8 @@ struct ResponseArguments {
   CameraArguments camera;
   CalibrateOutput output;
   ResponseRecordOptions record;
-  std::string excitation = "auto", time_unit, arm = "light", as = "file";
+  ResponseCalibrationOptions options;
+  std::string time_unit, arm = "light", as = "file";
 };
 
 nlohmann::ordered_json document_of(const CalibratedResponse& result) {
@@ -66,12 +67,11 @@ void run(ResponseArguments& arguments, const Session& session) {
                               "s; expected --time-step, the time between two values [s], or "
                               "--time-unit if the times have another unit",
                               record.time_step_s, 1.0 / base.fundamental_frequency_hz));
-  ResponseCalibrationOptions options{.fundamental_frequency_hz = base.fundamental_frequency_hz,
-                                     .samples = base.samples};
-  if (arguments.excitation != "auto") options.excitation = parse_excitation(arguments.excitation);
+  arguments.options.fundamental_frequency_hz = base.fundamental_frequency_hz;
+  arguments.options.samples = base.samples;
   CalibratedResponse result;
   try {
-    result = calibrate_impulse_response(std::move(record), options);
+    result = calibrate_impulse_response(std::move(record), arguments.options);
   } catch (const std::invalid_argument& error) {
     throw IoError(arguments.file, error.what());
   }
@@ -111,11 +111,7 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
                    "only)")
       ->required();
   arguments->camera.add_to(*command);
-  command
-      ->add_option("--excitation", arguments->excitation,
-                   "input of the light source or sensor during the record")
-      ->check(one_of({"auto", "pulse", "step"}))
-      ->capture_default_str();
+  add_field_option(*command, arguments->options, "excitation");
   const FieldOptions fields(*command, arguments->record);
   fields.add("column");
   fields.add("time_step_s", "--time-step");

@@ -117,9 +117,7 @@ void add_scene(CLI::App& command, MultipathCommandArguments& arguments) {
                          "uses the first CODE and the highest of --signals");
   add_field_option(command, arguments.scene, "width")->needs(scene);
   add_field_option(command, arguments.scene, "height")->needs(scene);
-  command.add_option("--bounce-rays", arguments.bounce.rays, "rays per pixel for bounced light")
-      ->check(integer_in(16, 65536))
-      ->capture_default_str()
+  add_field_option(command, arguments.bounce, "rays", "--bounce-rays")
       ->needs(scene)
       ->group(for_experts);
 }

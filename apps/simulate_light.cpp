@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "described_options.hpp"
 #include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
@@ -88,14 +89,7 @@ void MultipathLightArguments::add_to(CLI::App& command) {
                                          "scene, computed by ray tracing; 0: none")
                              ->check(integer_in(0, 1))
                              ->capture_default_str();
-  command
-      .add_option(
-          "--bounce-rays", bounce_.rays,
-          "rays per pixel for --bounces; noise decreases slightly faster than 1 / sqrt(rays)")
-      ->check(integer_in(16, 65536))
-      ->capture_default_str()
-      ->needs(bounces)
-      ->group(for_experts);
+  add_field_option(command, bounce_, "rays", "--bounce-rays")->needs(bounces)->group(for_experts);
   command
       .add_option("--truth-multipath", truth_,
                   "also write the true distance and signal of every return (.npz)")

@@ -67,7 +67,7 @@ py::dict response_dict(const CalibratedResponse& found) {
 CalibratedResponse calibrate_response(const Doubles& values, double time_step_s,
                                       double start_time_s, bool counts,
                                       const std::vector<std::string>& notes, const Camera& camera,
-                                      const std::optional<std::string>& excitation) {
+                                      const py::dict& given) {
   ResponseRecord record{.values = to_vector(values),
                         .time_step_s = time_step_s,
                         .start_time_s = start_time_s,
@@ -75,7 +75,7 @@ CalibratedResponse calibrate_response(const Doubles& values, double time_step_s,
                         .notes = notes};
   ResponseCalibrationOptions options{.fundamental_frequency_hz = camera.fundamental_frequency_hz,
                                      .samples = camera.samples};
-  if (excitation) options.excitation = parse_excitation(*excitation);
+  read_options(given, "", options);
   const py::gil_scoped_release release;
   return calibrate_impulse_response(std::move(record), options);
 }

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union, Unpack
+from typing import Any, Union, Unpack
 
 import numpy.typing as npt
 
@@ -14,7 +14,7 @@ from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._camera_fields import ImpulseResponse
 from ._check import FloatArray, Path
-from ._option_fields import ResponseRecordOptions
+from ._option_fields import ResponseCalibrationOptions, ResponseRecordOptions
 from ._options import takes
 from ._results import Estimate, calibrated
 
@@ -193,11 +193,11 @@ def read_response_record(
     return ResponseRecord(**_tofsmith.read_response_record(_check.path(path), dict(options)))
 
 
+@takes(ResponseCalibrationOptions)
 def calibrate_impulse_response(
     record: Union[ResponseRecord, Path],
     camera: CameraLike,
-    *,
-    excitation: Optional[str] = None,
+    **options: Unpack[ResponseCalibrationOptions],
 ) -> CalibratedResponse:
     """Calibrates the impulse response of an arm from a record of its response to a pulse or step.
 
@@ -206,8 +206,8 @@ def calibrate_impulse_response(
     record : ResponseRecord, str or path
     camera : Camera or its name
         Its f0 and N are used: the step of the response is a period over a multiple of N.
-    excitation : {"pulse", "step"}, optional
-        None: detected from the record.
+    **options
+        As in ResponseCalibrationOptions.
 
     Raises
     ------
@@ -238,6 +238,6 @@ def calibrate_impulse_response(
         )
     start_s = _check.number(record.start_time_s, "record.start_time_s")
     handle = _tofsmith.calibrate_impulse_response(
-        values, step_s, start_s, bool(record.counts), record.notes, camera._handle, excitation
+        values, step_s, start_s, bool(record.counts), record.notes, camera._handle, dict(options)
     )
     return calibrated(CalibratedResponse, handle)

@@ -289,7 +289,8 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   Eigen::VectorXd values = result.record.values;
 
   // Determine excitation, sign and position.
-  result.excitation = options.excitation.value_or(excitation_of(values));
+  result.excitation =
+      options.excitation == Excitation::automatic ? excitation_of(values) : options.excitation;
   const bool is_step = result.excitation == Excitation::step;
   const Index tenth = std::max<Index>(1, values.size() / 10);
   const double middle = median_of_all(values);

@@ -152,12 +152,7 @@ std::vector<MultipathReturn> BounceGatherer::gather(int row, int column) const {
 
 }  // namespace
 
-void BounceOptions::validate() const {
-  require(rays >= 16 && rays <= 65536, "BounceOptions::rays", rays, "must be in [16, 65536]");
-  require(std::isfinite(bin_m) && bin_m > 0.0, "BounceOptions::bin_m", bin_m,
-          "must be finite and > 0");
-  require(range_m > 0.0, "BounceOptions::range_m", range_m, "must be > 0");
-}
+void BounceOptions::validate() const { check_fields(*this, "BounceOptions::"); }
 
 MultipathReturns bounced_light(const StagedScene& scene, const BounceOptions& options,
                                const Progress& progress, const MeshSearchMaker& search_of) {

@@ -29,8 +29,6 @@ nested = {
 }
 # #: Structs whose functions list the keywords, their headers, and the fields specified in other ways.
 keywords = [
-    ("ResponseCalibrationOptions", "impulse_response.hpp", ts.calibrate_impulse_response,
-     {"fundamental_frequency_hz", "samples"}),
     ("CorrelationCalibrationOptions", "correlation_calibration.hpp", ts.calibrate_correlation,
      {"taps", "differences", "range_m", "exposure_s"}),
 ]

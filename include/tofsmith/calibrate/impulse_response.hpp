@@ -53,19 +53,17 @@ ResponseRecord read_response_record(const std::filesystem::path& path,
 
 /// Input of the arm during the record.
 enum class Excitation {
-  pulse,  ///< much shorter than the response
-  step,   ///< switching on or off; the response is the derivative of the record
+  automatic,  ///< detected in the record
+  pulse,      ///< much shorter than the response
+  step,       ///< switching on or off; the response is the derivative of the record
 };
-
-constexpr std::array<std::string_view, 2> words_of(Excitation /*any*/) { return {"pulse", "step"}; }
-/// @throws InvalidArgument for other words
-inline Excitation parse_excitation(std::string_view name) {
-  return parse_word<Excitation>("excitation", name);
+constexpr std::array<std::string_view, 3> words_of(Excitation /*any*/) {
+  return {"auto", "pulse", "step"};
 }
 
 /// Options of calibrate_impulse_response().
 struct ResponseCalibrationOptions {
-  std::optional<Excitation> excitation;
+  Excitation excitation = Excitation::automatic;
   double fundamental_frequency_hz = 15e6;  ///< f0
   int samples = 240;  ///< N; the time step of the result is a period over a multiple of N
 
@@ -74,8 +72,8 @@ struct ResponseCalibrationOptions {
 };
 auto fields_of(ConstOrNot<ResponseCalibrationOptions> auto& o) {
   return std::tuple(
-      Field("excitation", o.excitation, Help{"input of the arm during the record"},
-            IfAbsent{"detected in the record"}),
+      Field("excitation", o.excitation,
+            Help{"input of the light source or sensor during the record"}),
       Field("fundamental_frequency_hz", o.fundamental_frequency_hz, FieldMark::from_above),
       Field("samples", o.samples, FieldMark::from_above));
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
@@ -49,15 +50,23 @@ MultipathReturns behind_every_pixel(const SceneImage& scene,
 
 /// Options of bounced_light().
 struct BounceOptions {
-  int rays = 256;       ///< per pixel, 16 to 65536
-  double bin_m = 0.05;  ///< width of the delay bins in which light is merged, > 0
+  int rays = 256;
+  double bin_m = 0.05;
   std::uint64_t seed = 1;
-  /// Unambiguous range [m], > 0. Light delayed by more moves by whole ranges to its apparent depth.
+  /// Light delayed by more moves by whole ranges to its apparent depth.
   double range_m = std::numeric_limits<double>::infinity();
 
   /// @throws std::invalid_argument
   void validate() const;
 };
+auto fields_of(ConstOrNot<BounceOptions> auto& o) {
+  return std::tuple(
+      Field("rays", o.rays, closed(16, 65536),
+            Help{"rays per pixel for bounced light; noise decreases slightly faster than 1 / "
+                 "sqrt(rays)"}),
+      Field("bin_m", o.bin_m, above(0), Help{"width of the delay bins in which light is merged"}),
+      Field("seed", o.seed), Field("range_m", o.range_m, above(0).or_infinity()));
+}
 
 /// Computes the light that reaches the surface of a pixel via one other surface, for a point source
 /// at the camera's centre and Lambertian surfaces. x1 is the seen point at distance d1 and angle of
