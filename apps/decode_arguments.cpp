@@ -186,12 +186,13 @@ void add_settings(CLI::App& command, const char* argument, const char* whose, CL
 }  // namespace
 
 void FilterArguments::add_to(CLI::App& command) {
-  CLI::Option* const filter =
-      command
-          .add_option("--filter", strength_,
-                      "spatial filter, which averages measurements of neighbouring pixels at "
-                      "the same depth before decoding: light, normal or strong (default: off)")
-          ->check(one_of(detail::texts_of_words<FilterStrength>()));
+  CLI::Option* const filter = add_option_of(
+      command,
+      Field("filter", strength_,
+            Help{"spatial filter, which averages measurements of neighbouring pixels at the same "
+                 "depth before decoding: light, normal or strong"},
+            IfAbsent{"off"}),
+      "--filter");
   add_settings<FilterOptions>(command, "--filter-set", "the spatial filter", filter, settings_);
   CLI::Option* const time_filter =
       command
@@ -206,8 +207,8 @@ void FilterArguments::add_to(CLI::App& command) {
 }
 
 std::optional<FilterOptions> FilterArguments::options() const {
-  if (strength_.empty()) return std::nullopt;
-  FilterOptions options = FilterOptions::of(parse_filter_strength(strength_));
+  if (!strength_) return std::nullopt;
+  FilterOptions options = FilterOptions::of(*strength_);
   for (const std::string& setting : settings_) set_field("--filter-set", setting, options);
   return options;
 }

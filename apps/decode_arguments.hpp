@@ -60,10 +60,10 @@ class FilterArguments {
   /// @throws UsageError for invalid keys or values
   std::optional<FilterOptions> options() const;
   std::optional<TimeFilterOptions> time_options() const;
-  std::string name() const { return strength_.empty() ? "off" : strength_; }
+  std::string name() const { return std::string(strength_ ? name_of(*strength_) : "off"); }
 
  private:
-  std::string strength_;
+  std::optional<FilterStrength> strength_;
   std::vector<std::string> settings_;
   int max_frames_ = 0;
   TimeFilterOptions time_options_;  ///< without max_frames

@@ -21,10 +21,6 @@ enum class DecimalMark { automatic, point, comma };
 constexpr std::array<std::string_view, 3> words_of(DecimalMark /*any*/) {
   return {"auto", "point", "comma"};
 }
-/// @throws std::invalid_argument for any other word
-inline DecimalMark parse_decimal_mark(std::string_view word) {
-  return parse_word<DecimalMark>("decimal mark", word);
-}
 
 /// Constraints on the interpretation of a text.
 struct NumberTableOptions {
