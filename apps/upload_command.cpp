@@ -25,7 +25,7 @@ namespace tofsmith::apps {
 namespace {
 
 struct UploadArguments {
-  std::string code, address, model, load = "50", filter = "step";
+  std::string code, address, model, load = "50";
   CameraArguments camera;
   TapArguments taps;
   ExportOptions options;
@@ -89,7 +89,6 @@ void show_dry_run(const UploadArguments& arguments, const CodeSet& code, const C
   const GeneratorModel model = as_usage([&] { return generator_model(arguments.model); });
   UploadRequest request = arguments.request;
   request.load_ohm = load_in(arguments.load);
-  request.filter = parse_output_filter(arguments.filter);
   const WaveformExport exported =
       export_for_model(code, camera, model, arguments.options, request.true_arb);
   request.channels = as_usage([&] { return selected_channels(exported, arguments.selection); });
@@ -107,46 +106,37 @@ void show_dry_run(const UploadArguments& arguments, const CodeSet& code, const C
   session.say(text);
 }
 
-template <typename Value>
-void set_if_given(nlohmann::ordered_json& json, const char* name,
-                  const std::optional<Value>& value) {
-  if (value) json[name] = *value;
+/// Adds the numbers and words of a struct to a JSON object.
+template <typename Struct>
+void add_fields(nlohmann::ordered_json& json, const Struct& its) {
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (HasWords<Value>) {
+      json[field.name] = name_of(field.value);
+    } else if constexpr (is_optional<Value>) {
+      if (field.value) json[field.name] = *field.value;
+    } else if constexpr (std::is_arithmetic_v<Value>) {
+      json[field.name] = field.value;
+    }
+  });
 }
 
 /// Returns the arguments of upload() in python/tofsmith/instruments.py.
 nlohmann::ordered_json upload_request(const UploadArguments& arguments, const CodeSet& code,
                                       const Camera& camera, const Session& session) {
-  const UploadRequest& request = arguments.request;
-  const UploadSelection& selection = arguments.selection;
-  nlohmann::ordered_json tables = {{"low_v", arguments.options.low_v},
-                                   {"high_v", arguments.options.high_v}};
-  set_if_given(tables, "samples", arguments.options.samples);
-  set_if_given(tables, "sample_rate_hz", arguments.options.sample_rate_hz);
-  set_if_given(tables, "edge_grid_s", arguments.options.edge_grid_s);
-  set_if_given(tables, "periods", arguments.options.periods);
-  nlohmann::ordered_json model;
-  if (!arguments.model.empty()) model = arguments.model;
+  nlohmann::ordered_json tables,
+      options = {{"address", arguments.address}, {"timeout_s", arguments.timeout_s}};
+  if (!arguments.model.empty()) options["model"] = arguments.model;
+  add_fields(tables, arguments.options);
+  add_fields(options, arguments.selection);
+  add_fields(options, arguments.request);
+  options["tables"] = std::move(tables);
+  options["load_ohm"] = arguments.load;  // JSON has no infinity
   return {{"code", code_to_json(code)},
           {"camera", camera_to_toml(camera)},
           {"json", session.json},
           {"quiet", is_progress_silent()},
-          {"load", arguments.load},
-          {"options",
-           {{"address", arguments.address},
-            {"model", std::move(model)},
-            {"timeout_s", arguments.timeout_s},
-            {"light_channel", selection.light_channel},
-            {"sensor_channel", selection.sensor_channel},
-            {"exposure", selection.exposure},
-            {"tap", selection.tap},
-            {"all", selection.all},
-            {"output_on", request.output_on},
-            {"read_back", request.read_back},
-            {"reset", request.reset},
-            {"true_arb", request.true_arb},
-            {"wave_header", name_of(request.wave_header)},
-            {"filter", arguments.filter},
-            {"tables", std::move(tables)}}}};
+          {"options", std::move(options)}};
 }
 
 void run(UploadArguments& arguments, const Session& session) {
@@ -182,10 +172,7 @@ void add_family_options(CLI::App& command, UploadArguments& arguments) {
   const FieldOptions request(command, arguments.request);
   request.add("true_arb")->group(for_experts);
   request.add("wave_header")->group(for_experts);
-  command.add_option("--filter", arguments.filter, "output filter; only with a Keysight")
-      ->check(one_of({"step", "normal", "off"}))
-      ->capture_default_str()
-      ->group(for_experts);
+  request.add("filter")->group(for_experts);
 }
 
 }  // namespace

@@ -29,7 +29,6 @@ NESTED = {"factorize": "FactorizeOptions", "optimize": "OptimizeOptions",
 ELSEWHERE = {"CaptureOptions": {"signal_e_per_s", "ambient_e_per_s"},
              "RequirementOptions": {"error_m"}, "ExportOptions": {"format"},
              "SceneSource": {"scene"}, "MultipathOptions": {"status_thresholds"},
-             "UploadRequest": {"filter"},
              "DecodeRequest": {"time_filter", "filter", "raw_format"}}
 # Classes for functions with a part of the fields of a struct.
 PARTS = {"StreamOptions": ("DecodeRequest", {"layout", "dataset", "all_points", "frame", "stack",

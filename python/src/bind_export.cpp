@@ -57,9 +57,7 @@ struct UploadOptions {
 UploadOptions upload_options(const py::dict& values) {
   UploadOptions options;
   OptionReader reader(values, "");
-  reader.fields(options.selection)
-      .fields(options.request, {"filter"})
-      .word("filter", options.request.filter, parse_output_filter);
+  reader.fields(options.selection).fields(options.request);
   options.tables = export_options("", reader.table("tables"));
   reader.finish();
   options.selection.validate();

@@ -10,10 +10,8 @@ from typing import Any
 
 from ._camera import Camera
 from ._code import CodeSet
+from ._tofsmith import UploadChannel
 from .instruments import UploadReport, upload, visa_resource_name
-
-_CHANNEL_KEYS = ("channel", "arm", "waveform", "stored", "points", "periods", "sample_rate_hz",
-                 "repetition_hz", "low_v", "high_v", "full_scale")
 
 
 def _document(report: UploadReport, output_on: bool) -> dict[str, Any]:
@@ -21,7 +19,8 @@ def _document(report: UploadReport, output_on: bool) -> dict[str, Any]:
     for channel in report.channels:
         numbers = {number.quantity: {"requested": number.requested, "read_back": number.read_back}
                    for number in report.numbers if number.channel == channel.channel}
-        channels.append({key: getattr(channel, key) for key in _CHANNEL_KEYS} | {"numbers": numbers})
+        channels.append({key: getattr(channel, key) for key in vars(UploadChannel)
+                          if not key.startswith("_")} | {"numbers": numbers})
     return {
         "instrument": {name: getattr(report, name) for name in
                        ("address", "vendor", "model", "serial", "firmware", "treated_as")},
@@ -55,7 +54,8 @@ def _fail(problem: object, code: int) -> int:
 
 def main() -> int:
     request = json.load(sys.stdin)
-    options = request["options"] | {"load_ohm": float(request["load"])}
+    options = request["options"]
+    options["load_ohm"] = float(options["load_ohm"])
     shows_progress = sys.stderr.isatty() and not request["quiet"]
     try:
         visa_resource_name(options["address"])

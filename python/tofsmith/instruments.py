@@ -79,7 +79,6 @@ def upload_script(
     camera: CameraLike,
     model: str,
     *,
-    filter: str = "step",
     tables: Union[ExportOptions, Mapping[str, Any], None] = None,
     **options: Unpack[UploadOptions],
 ) -> UploadScript:
@@ -91,7 +90,7 @@ def upload_script(
     camera : Camera or its name
     model : str
         Name of one of generator_models().
-    filter, tables
+    tables
         As in upload().
     **options
         As in UploadOptions.
@@ -102,8 +101,7 @@ def upload_script(
         Naming the points, rate, voltage or channel that the model does not support.
     """
     handles = handles_of(code, camera)
-    given: dict[str, Any] = {
-        **options, "filter": filter, "tables": None if tables is None else dict(tables)}
+    given: dict[str, Any] = {**options, "tables": None if tables is None else dict(tables)}
     return _tofsmith.upload_script(*handles, _check.text(model, "model"), given)
 
 
@@ -115,7 +113,6 @@ def upload(
     *,
     model: Optional[str] = None,
     timeout_s: float = 5.0,
-    filter: str = "step",
     tables: Union[ExportOptions, Mapping[str, Any], None] = None,
     progress: Progress = None,
     **options: Unpack[UploadOptions],
@@ -139,8 +136,6 @@ def upload(
         Timeout for an answer [s], plus one second per 100 kB of a block.
     progress : callable, optional
         Called before every message; returning False stops the upload.
-    filter : {"step", "normal", "off"}
-        Output filter of Keysight instruments.
     tables : dict, optional
         Options of export_waveforms(), such as {"samples": 500, "low_v": 0, "high_v": 2}.
     **options
@@ -160,8 +155,7 @@ def upload(
     if not 0 < seconds <= 3600:
         raise ValueError(f"timeout_s: got {seconds:g}; needs a number in (0, 3600]")
     progress = _check.progress(progress)
-    to_script = functools.partial(
-        upload_script, code, camera, filter=filter, tables=tables, **options)
+    to_script = functools.partial(upload_script, code, camera, tables=tables, **options)
     script = None if model is None else to_script(model)
     session = Session(resource_name, seconds)
     try:

@@ -88,6 +88,11 @@ void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& 
   steps.push_back(message_step("delete the file", "MMEM:DEL " + file));
 }
 
+/// Returns the word of a filter in messages.
+std::string_view scpi_word(OutputFilter filter) {
+  return filter == OutputFilter::step ? "STEP" : filter == OutputFilter::normal ? "NORM" : "OFF";
+}
+
 void set_keysight_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
                           const UploadChannel& channel) {
   const int n = channel.channel;
@@ -98,7 +103,7 @@ void set_keysight_channel(std::vector<UploadStep>& steps, const UploadRequest& r
                      std::isinf(request.load_ohm) ? "INF" : fmt::format("{:g}", request.load_ohm)));
   to.set("waveform", fmt::format("SOUR{}:FUNC:ARB \"{}\"", n, memory_name(w)));
   to.set("function", fmt::format("SOUR{}:FUNC ARB", n));
-  to.set("filter", fmt::format("SOUR{}:FUNC:ARB:FILT {}", n, request.filter));
+  to.set("filter", fmt::format("SOUR{}:FUNC:ARB:FILT {}", n, scpi_word(request.filter)));
   to.set("clock", fmt::format("SOUR{}:FUNC:ARB:SRAT {:.12g}", n, w.sample_rate_hz));
   to.set("unit", fmt::format("SOUR{}:VOLT:UNIT VPP", n));
   to.set("amplitude", fmt::format("SOUR{}:VOLT {:.6g}", n, w.amplitude_vpp()));
@@ -114,7 +119,8 @@ void check_keysight_channel(std::vector<UploadStep>& steps, const UploadRequest&
   to.ask(fmt::format("SOUR{}:FUNC?", n), {word_check(n, "function", "", {"ARB"})});
   to.ask(fmt::format("SOUR{}:FUNC:ARB?", n),
          {word_check(n, "waveform", "", {memory_name(w)}, true)});
-  to.ask(fmt::format("SOUR{}:FUNC:ARB:FILT?", n), {word_check(n, "filter", "", {request.filter})});
+  to.ask(fmt::format("SOUR{}:FUNC:ARB:FILT?", n),
+         {word_check(n, "filter", "", {std::string(scpi_word(request.filter))})});
   to.ask(fmt::format("SOUR{}:FUNC:ARB:SRAT?", n),
          {number_check(n, "sample_rate_hz", "", w.sample_rate_hz,
                        frequency_tolerance_hz(w.sample_rate_hz, scpi_frequency_tolerance))});

@@ -65,13 +65,6 @@ std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
   return channels;
 }
 
-std::string parse_output_filter(std::string_view word) {
-  if (word == "step") return "STEP";
-  if (word == "normal") return "NORM";
-  if (word == "off") return "OFF";
-  reject("filter", word, "must be step, normal or off");
-}
-
 namespace {
 
 constexpr double rounding = 1.0 + 1e-9;
@@ -157,8 +150,6 @@ void check_upload(const GeneratorModel& model, const UploadRequest& request) {
   require(!request.channels.empty(), "channels", 0, "must be at least one");
   require((request.load_ohm >= 1.0 && request.load_ohm <= 1e6) || std::isinf(request.load_ohm),
           "load_ohm", request.load_ohm, "must be in [1, 1e6] or infinite");
-  require(request.filter == "STEP" || request.filter == "NORM" || request.filter == "OFF", "filter",
-          request.filter, "must be STEP, NORM or OFF");
   check_fields(request);
   if (request.true_arb)
     require(model.true_arb_rate_hz > 0.0, "true_arb", "on",

@@ -32,6 +32,12 @@ constexpr std::array<std::string_view, 3> words_of(WaveHeader /*any*/) {
   return {"length", "plain", "minimal"};
 }
 
+/// Filter of the output of a Keysight generator.
+enum class OutputFilter { step, normal, off };
+constexpr std::array<std::string_view, 3> words_of(OutputFilter /*any*/) {
+  return {"step", "normal", "off"};
+}
+
 struct UploadRequest {
   std::vector<UploadChannel> channels;
   double load_ohm = 50.0;
@@ -42,7 +48,7 @@ struct UploadRequest {
   WaveHeader wave_header = WaveHeader::length;
   double settle_s = 0.5;
   double patience_s = 20.0;
-  std::string filter = "STEP";
+  OutputFilter filter = OutputFilter::step;
 };
 auto fields_of(ConstOrNot<UploadRequest> auto& r) {
   constexpr OnlyWith siglent{"a Siglent"}, keysight{"a Keysight"};
@@ -63,7 +69,7 @@ auto fields_of(ConstOrNot<UploadRequest> auto& r) {
       Field("settle_s", r.settle_s, closed(0, 60), Help{"pause after a waveform"}, siglent),
       Field("patience_s", r.patience_s, closed(0, 600),
             Help{"additional time for a reset and for files"}),
-      Field("filter", r.filter, Help{"filter of the output: STEP, NORM or OFF"}, keysight));
+      Field("filter", r.filter, Help{"output filter"}, keysight));
 }
 
 /// Expected content of an answer.
@@ -150,10 +156,6 @@ WaveformExport export_for_model(const CodeSet& code, const Camera& camera,
 /// @throws std::invalid_argument if the code has no such exposure or tap
 std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
                                              const UploadSelection& selection);
-
-/// Parses "step", "normal" or "off" into the name of a Keysight filter.
-/// @throws std::invalid_argument
-std::string parse_output_filter(std::string_view word);
 
 /// A script for one exposure and all models that accept the same messages.
 struct ExportedScript {
