@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 #include "commands.hpp"
@@ -34,11 +33,6 @@
 namespace tofsmith::apps {
 
 namespace {
-
-/// Returns a bound for a CSV file; an empty field if there is no bound.
-std::string bound_field(double bound_m) {
-  return std::isnan(bound_or_nan(bound_m)) ? "" : fmt::format("{:.9g}", bound_m);
-}
 
 std::string bound_text(double bound_m, const Estimate& error_m) {
   if (bound_m == 0.0) return "none";
@@ -99,31 +93,45 @@ std::vector<std::vector<std::string>> evaluation_rows(const std::vector<Evaluate
   return rows;
 }
 
+/// Calls `add` with the name and the value of each column of an operating point, with an empty
+/// value if there is no bound.
+template <typename Add>
+void add_columns(const PointDepthError& point, const Add& add) {
+  const auto number = [](double value) { return fmt::format("{:.9g}", value); };
+  for_each_field(point, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (std::is_same_v<Value, OperatingPoint>) {
+      for_each_field(field.value, [&](const auto& light) { add(light.name, number(light.value)); });
+    } else if constexpr (std::is_same_v<Value, Estimate>) {
+      add(field.name, number(field.value.value));
+      if (!field.is(FieldMark::without_error))
+        add(error_name(field.name), number(field.value.standard_error));
+    } else if constexpr (std::is_same_v<Value, double>) {
+      const bool is_empty =
+          field.is(FieldMark::may_be_null) && std::isnan(bound_or_nan(field.value));
+      add(field.name, is_empty ? "" : number(field.value));
+    }
+  });
+}
+
 /// Returns the same as CSV, in metres.
 std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
   const bool compared = is_compared_with_zncc(codes);
   const bool has_others = is_evaluated_with_interference(codes);
-  std::string text = fmt::format(
-      "code,signal_e_per_s,ambient_e_per_s,linear_mde_m,linear_se_m,circular_mde_m,circular_se_m,"
-      "linear_rmse_m,linear_rmse_se_m,circular_rmse_m,circular_rmse_se_m,outlier_rate,"
-      "cramer_rao_mae_m,receiver_bound_mae_m,direct_tof_bound_mae_m{}{}\n",
-      compared ? ",zncc_linear_mde_m,zncc_circular_mde_m" : "",
-      has_others ? ",interference_rms_m,interference_expected_rmse_m,interference_circular_mde_m,"
-                   "interference_circular_rmse_m,interference_wrong,interference_wrong_ok,"
-                   "interference_wrong_inconsistent"
-                 : "");
+  std::string text = "code";
+  add_columns({}, [&](std::string_view name, std::string_view) { (text += ',') += name; });
+  if (compared) text += ",zncc_linear_mde_m,zncc_circular_mde_m";
+  if (has_others)
+    text +=
+        ",interference_rms_m,interference_expected_rmse_m,interference_circular_mde_m,"
+        "interference_circular_rmse_m,interference_wrong,interference_wrong_ok,"
+        "interference_wrong_inconsistent";
+  text += "\n";
   for (const EvaluatedCode& code : codes)
     for (std::size_t i = 0; i < code.error.points.size(); ++i) {
-      const PointDepthError& p = code.error.points[i];
-      text += fmt::format(
-          "{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},"
-          "{:.9g},{:.9g},{},{}",
-          csv_field(code.error.code), p.point.signal_e_per_s, p.point.ambient_e_per_s,
-          p.linear_mde_m.value, p.linear_mde_m.standard_error, p.circular_mde_m.value,
-          p.circular_mde_m.standard_error, p.linear_rmse_m.value, p.linear_rmse_m.standard_error,
-          p.circular_rmse_m.value, p.circular_rmse_m.standard_error, p.outlier_rate.value,
-          p.cramer_rao_mae_m, bound_field(p.receiver_bound_mae_m),
-          bound_field(p.direct_tof_bound_mae_m));
+      text += csv_field(code.error.code);
+      add_columns(code.error.points[i],
+                  [&](std::string_view, std::string_view value) { (text += ',') += value; });
       if (compared)
         text += fmt::format(",{:.9g},{:.9g}", code.zncc_error->points[i].linear_mde_m.value,
                             code.zncc_error->points[i].circular_mde_m.value);
@@ -156,21 +164,9 @@ constexpr std::array quantities = {
 
 /// Converts a text such as "50ps", "5 ns", "3%" or "0.03" to SI units; NaN if it is invalid.
 double value_of(std::string_view text, bool is_time) {
-  using Unit = std::pair<std::string_view, double>;
-  constexpr std::array<Unit, 5> times = {
-      {{"ps", 1e-12}, {"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}}};
-  constexpr std::array<Unit, 2> shares = {{{"%", 0.01}, {"", 1.0}}};
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc()) return NAN;
-  std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
-  while (unit.starts_with(' ')) unit.remove_prefix(1);
-  const auto scaled = [&](const auto& units) {
-    for (const auto& [name, factor] : units)
-      if (unit == name) return number * factor;
-    return static_cast<double>(NAN);
-  };
-  return is_time ? scaled(times) : scaled(shares);
+  if (is_time) return number_with_unit(text, "s");
+  return text.ends_with('%') ? number_with_unit(text, "%") / 100.0
+                             : number_in_unit(text, "").value_or(NAN);
 }
 
 /// Parses `--perturb jitter=50ps,clock=5ns,droop=3%`: each of these changes alone, and all

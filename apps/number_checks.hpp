@@ -29,6 +29,11 @@ bool read_number_pair(const std::string& text, char separator, Number& first, Nu
          CLI::detail::lexical_cast(text.substr(at + 1), second);
 }
 
+/// Reads a number that must have a unit, such as "5mm" with the unit "m"; NaN for other text.
+inline double number_with_unit(std::string_view text, std::string_view unit) {
+  return text.ends_with(unit) ? number_in_unit(text, unit).value_or(NAN) : NAN;
+}
+
 /// Reads one number, or two separated by a colon: minimum and maximum. Returns false for other
 /// text.
 inline bool read_limits(const std::string& text, std::array<double, 2>& limits) {

@@ -35,15 +35,8 @@ struct RequireArguments {
 /// Parses "5mm", "2 cm" or "0.005 m".
 /// @throws UsageError
 double length_of(const std::string& text) {
-  for (const auto& [unit, metres] :
-       {std::pair("mm", 1e-3), std::pair("cm", 1e-2), std::pair("m", 1.0)}) {
-    if (!text.ends_with(unit)) continue;
-    double value = 0.0;
-    const std::string number = CLI::detail::trim_copy(text.substr(0, text.find(unit)));
-    if (CLI::detail::lexical_cast(number, value) && value > 0.0 && std::isfinite(value))
-      return value * metres;
-    break;
-  }
+  const double length_m = number_with_unit(text, "m");
+  if (length_m > 0.0 && std::isfinite(length_m)) return length_m;
   throw UsageError(
       fmt::format("--error: found '{}'; expected a length > 0 with its unit, such as 5mm", text));
 }
