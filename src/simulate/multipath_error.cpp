@@ -72,10 +72,10 @@ TrialFrame draw_two_returns(const PixelCapture& pixel, const Camera& camera,
                     });
 }
 
-template <typename AnyDecoder>
+template <typename DecoderType>
 OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera,
                                  const OperatingMultipath& later, const EvaluateOptions& options,
-                                 const AnyDecoder& decoder, const Progress& progress) {
+                                 const DecoderType& decoder, const Progress& progress) {
   const double range_m = camera.range_m();
   std::vector<Estimate> linear_m, circular_m;
   const std::size_t points = camera.operating.points().size();
@@ -151,9 +151,9 @@ class CellTrials {
   const DecodingTable& table() const { return table_; }
 
   /// @param decoder  for two returns or a tail
-  template <typename AnyDecoder>
+  template <typename DecoderType>
   MultipathCell cell(const CellLight& light, std::uint64_t number,
-                     const std::optional<AnyDecoder>& decoder, const Progress& progress) const;
+                     const std::optional<DecoderType>& decoder, const Progress& progress) const;
 
  private:
   TrialFrame capture(const CellLight& light, std::uint64_t number) const;
@@ -211,9 +211,9 @@ double CellTrials::cramer_rao_mae_m(const CellLight& light) const {
                                     : bound_.sigma_m(point, light.ratio, light.delay_m));
 }
 
-template <typename AnyDecoder>
+template <typename DecoderType>
 MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
-                               const std::optional<AnyDecoder>& decoder,
+                               const std::optional<DecoderType>& decoder,
                                const Progress& progress) const {
   MultipathCell result;
   result.ratio = light.ratio;
@@ -239,14 +239,14 @@ MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
   return result;
 }
 
-template <typename AnyDecoder>
-std::optional<AnyDecoder> decoder_if_any(const DecodingTable& table,
-                                         const MultipathOptions& options, std::string& why_not) {
-  if (const auto why = AnyDecoder::why_not_decodable(table)) {
+template <typename DecoderType>
+std::optional<DecoderType> decoder_if_any(const DecodingTable& table,
+                                          const MultipathOptions& options, std::string& why_not) {
+  if (const auto why = DecoderType::why_not_decodable(table)) {
     why_not = *why;
     return std::nullopt;
   }
-  return AnyDecoder(table, options);
+  return DecoderType(table, options);
 }
 
 }  // namespace

@@ -221,8 +221,8 @@ TEST(RowsDecoder, NoDepthIsMoreLikelyThanThatOfMaximumLikelihood) {
 }
 
 /// Predicted over empirical deviation.
-template <typename AnyDecoder>
-double deviation_ratio(const RowsSetup& setup, const AnyDecoder& decoder) {
+template <typename DecoderType>
+double deviation_ratio(const RowsSetup& setup, const DecoderType& decoder) {
   const OperatingPoint light = setup.camera.operating.middle();
   constexpr int pixels = 400;
   constexpr double depth_bin = 20.4;

@@ -21,11 +21,11 @@
 namespace tofsmith {
 
 /// A code, a camera and the matching decoder.
-template <typename AnyDecoder, typename Options>
+template <typename DecoderType, typename Options>
 struct DecoderSetup {
   Camera camera;
   ForwardModel model;
-  AnyDecoder decoder;
+  DecoderType decoder;
 
   DecoderSetup(const std::string& code, const Camera& camera_, const Options& options = {})
       : camera(camera_),
@@ -144,15 +144,15 @@ inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table,
   return raw;
 }
 
-template <typename AnyDecoder>
-std::vector<std::int32_t> bins_of(const AnyDecoder& decoder, const std::vector<float>& raw) {
+template <typename DecoderType>
+std::vector<std::int32_t> bins_of(const DecoderType& decoder, const std::vector<float>& raw) {
   std::vector<std::int32_t> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
   decoder.decode_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());
   return bins;
 }
 
-template <typename AnyDecoder>
-std::vector<double> depth_bins_of(const AnyDecoder& decoder, const std::vector<float>& raw) {
+template <typename DecoderType>
+std::vector<double> depth_bins_of(const DecoderType& decoder, const std::vector<float>& raw) {
   std::vector<double> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
   decoder.decode_depth_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());
   return bins;

@@ -20,8 +20,8 @@ namespace tofsmith {
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float infinite = std::numeric_limits<float>::infinity();
 
-template <typename AnyDecoder>
-DepthImage decode_pixels(const AnyDecoder& decoder, const std::vector<float>& raw) {
+template <typename DecoderType>
+DepthImage decode_pixels(const DecoderType& decoder, const std::vector<float>& raw) {
   return decoder.decode(frame_of(raw, decoder.measurements()));
 }
 
@@ -43,8 +43,8 @@ void expect_strong_signal_is_ok(const Setup& setup, double signal, double signal
 /// Sets some of `pixels` noisy pixels to NaN or infinity, in one or in all measurements; the other
 /// pixels must not change.
 /// @param max_apart_bin  largest distance of the other depths from their bins
-template <typename AnyDecoder>
-void expect_not_a_number_disturbs_no_neighbour(const AnyDecoder& decoder, int pixels,
+template <typename DecoderType>
+void expect_not_a_number_disturbs_no_neighbour(const DecoderType& decoder, int pixels,
                                                double max_apart_bin = 0.5) {
   std::vector<float> raw = noisy_pixels(decoder.table(), 1e4, 1e4, pixels, 1);
   const DepthImage before = decode_pixels(decoder, raw);
@@ -87,11 +87,11 @@ void expect_huge_numbers_are_decoded(const Setup& setup) {
 
 /// On a curve within a half-space, a measurement of the opposite direction only fits a negative
 /// signal.
-template <typename AnyDecoder>
+template <typename DecoderType>
 void expect_negative_signal_is_no_return() {
   Eigen::MatrixXd correlation(20, 3);
   for (int n = 0; n < 20; ++n) correlation.row(n) << 0.0, 1.0, 0.02 * n;
-  const AnyDecoder decoder(make_decoding_table(correlation, 10.0));
+  const DecoderType decoder(make_decoding_table(correlation, 10.0));
   EXPECT_EQ(decode_pixels(decoder, {100.0f, 0.0f, 50.0f}).status(0, 0), PixelStatus::no_return);
   EXPECT_EQ(decode_pixels(decoder, {0.0f, 1e6f, 2e5f}).status(0, 0), PixelStatus::ok);
 }
