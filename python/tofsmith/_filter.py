@@ -182,10 +182,8 @@ class TimeFilter(_OfTable):
 
     Parameters
     ----------
-    code : CodeSet, DecodingTable, name of a family or file
-        As in Decoder.
-    camera : Camera or its name
-        Required unless `code` is a DecodingTable.
+    code, camera
+        As in Filter.
     **options
         As in TimeFilterOptions. With `look_ahead`, end() returns the last frames.
 
@@ -229,12 +227,8 @@ class TimeFilter(_OfTable):
         raw : ndarray
             As in Decoder.decode(), unprocessed, with the size of the earlier frames. Averaging
             restarts for pixels that are invalid or saturated.
-        averaged : float, or array_like of shape (H, W) or (F, H, W), optional
-            Number of measurements averaged in each pixel, if the numbers are already means.
-        layout : {"interleaved", "planar"}
-            Not inferred from the shape.
-        progress : callable, optional
-            Called with (fraction, step); returning False cancels.
+        averaged, layout, progress
+            As in Filter.apply().
 
         Returns
         -------
@@ -242,19 +236,12 @@ class TimeFilter(_OfTable):
             Raw numbers for any decoder. With `look_ahead`, this is always a stack. It contains the
             frames for which enough later frames were added, and is empty at first.
         averaged : ndarray of float32, shape (H, W) or (F, H, W)
-            Effective number of averaged measurements (variance reduction), for `averaged` of
-            Decoder.decode().
+            As from Filter.apply().
 
         Raises
         ------
-        ValueError
-            For an unsupported dtype or shape.
-        Interrupted
-            If `progress` cancels.
-
-        Notes
-        -----
-        Results are identical for any number of threads and any layout.
+        ValueError, Interrupted
+            As from Filter.apply().
         """
         return self._handle.add(*_frames(raw, averaged, layout), _check.progress(progress))
 
