@@ -112,9 +112,9 @@ TEST(LoadCode, SuggestsSimilarNames) {
 }
 
 TEST(TapOrder, HasTwoValidNames) {
-  EXPECT_EQ(parse_tap_order("blocked"), TapOrder::blocked);
-  EXPECT_EQ(parse_tap_order("interleaved"), TapOrder::interleaved);
-  EXPECT_THROW(parse_tap_order("both"), std::invalid_argument);
+  EXPECT_EQ(parse_word<TapOrder>("tap order", "blocked"), TapOrder::blocked);
+  EXPECT_EQ(parse_word<TapOrder>("tap order", "interleaved"), TapOrder::interleaved);
+  EXPECT_THROW(parse_word<TapOrder>("tap order", "both"), std::invalid_argument);
 }
 
 TEST(CorrelationFile, AListIsOneFunction) {
@@ -310,7 +310,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(CodeJson, RejectsMissingMembers) {
   EXPECT_EQ(refusal(without("", "samples")), "c.json: found no member \"samples\"; expected one");
-  EXPECT_EQ(refusal(without("", "format")), "c.json: found no member \"format\"; expected one");
+  EXPECT_EQ(refusal(without("", "format")),
+            "c.json: found no member \"format\"; expected \"format\": \"tofsmith-code\"");
   EXPECT_EQ(refusal(without("/demodulation/2", "values")),
             "c.json: /demodulation/2: found no member \"values\"; expected one");
   EXPECT_EQ(refusal(json(3)), "c.json: found 3; expected an object");

@@ -155,8 +155,10 @@ Provenance read_provenance(const JsonReader& json) {
 }
 
 void check_format(const JsonReader& json) {
-  const JsonReader format = json.member("format");
-  if (format.text() != format_name) format.mistyped(fmt::format("\"{}\"", format_name));
+  const auto format = json.optional_member("format");
+  if (!format)
+    json.fail(fmt::format("found no member \"format\"; expected \"format\": \"{}\"", format_name));
+  if (format->text() != format_name) format->mistyped(fmt::format("\"{}\"", format_name));
   const JsonReader version = json.member("version");
   if (version.integer(1, std::numeric_limits<int>::max()) != format_version)
     version.mistyped(fmt::format("{}: a newer tofsmith wrote this file", format_version));
