@@ -20,16 +20,14 @@ from tofsmith.paper import Finding, UsageError, items, reproduce
 def parser() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(
         "tofsmith reproduce", allow_abbrev=False,
-        description="Reproduces the paper's figures and statements, with our numbers.")
+        epilog="`tofsmith reproduce --help` describes the options.")
     made.add_argument("names", nargs="+", metavar="FIGURE", help="all, " + ", ".join(items))
-    made.add_argument("--fast", action="store_true", help="faster, with larger statistical errors")
-    made.add_argument("--seed", type=int, default=1, help="seed of every random choice (1)")
-    made.add_argument("--mesh", help="mesh for fig7, instead of the modelled hand (.obj .ply .stl)")
-    made.add_argument("-o", "--output", default="tofsmith-reproduce",
-                      help="output directory; finished figures are kept (%(default)s)")
-    made.add_argument("--force", action="store_true", help="compute finished figures again")
-    made.add_argument("--json", action="store_true", help="print one JSON document")
-    made.add_argument("--threads", type=int, default=0, help="number of threads (0: all cores)")
+    for flag in ("--fast", "--force", "--json"):
+        made.add_argument(flag, action="store_true")
+    made.add_argument("--seed", type=int, default=1)
+    made.add_argument("--threads", type=int, default=0)
+    made.add_argument("--mesh")
+    made.add_argument("-o", "--output", default="tofsmith-reproduce")
     return made
 
 

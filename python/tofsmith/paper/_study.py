@@ -6,7 +6,7 @@ import csv
 import hashlib
 import html
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -107,6 +107,11 @@ class Study:
         file.parent.mkdir(parents=True, exist_ok=True)
         tofsmith.write_code(file, code, overwrite=True)
         return code
+
+    def codes(self, camera: Camera, exposures: Sequence[int], families: Iterable[str]) -> list[CodeSet]:
+        """Returns codes for a camera: redesigned ones, then families."""
+        return [self.redesigned(count, camera) for count in exposures] + [
+            tofsmith.build_family(name, camera) for name in families]
 
     def finish(self, title: str) -> None:
         """Writes findings.json, which exists only if all other files are complete."""

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Colours, names and sizes of all figures."""
 
+from typing import Any
+
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -30,8 +32,10 @@ def short_name(code: str) -> str:
     return "sinusoid" if code.startswith("sinusoid") else "multi-frequency"
 
 
-def new_figure(width_in: float, height_in: float) -> Figure:
-    return Figure(figsize=(width_in, height_in), layout="constrained")
+def new_figure(width_in: float, height_in: float, *shape: int, **options: Any) -> tuple[Figure, Any]:
+    """Returns a figure and its axes, in rows and columns."""
+    figure = Figure(figsize=(width_in, height_in), layout="constrained")
+    return figure, figure.subplots(*shape, **options)
 
 
 def legend_below(columns: int, *axes: Axes) -> None:

@@ -20,19 +20,14 @@ def scanning_codes(study: Study) -> tuple[Camera, list[CodeSet]]:
     camera = Camera("prototype")
     signals = [SCAN_POWER_MW * signal for signal in camera.operating.signal_e_per_s]
     camera = camera.replace(name="prototype-10mw", operating={"signal_e_per_s": signals})
-    codes = [study.redesigned(exposures, camera) for exposures in (4, 5)]
-    return camera, codes + [tofsmith.build_family(name, camera) for name in BASELINES]
+    return camera, study.codes(camera, (4, 5), BASELINES)
 
 
-def decoded_depths(
-    scene: Scene, code: CodeSet, camera: Camera, light: Light, *, frames: int, seed: int,
-    falloff: bool = True, reference_distance_m: float = 1.0,
-) -> Any:
-    """Captures a scene several times and decodes every frame: radial depth [m], (F, H, W). Uses
-    all estimates, regardless of their status."""
+def decoded_depths(scene: Scene, code: CodeSet, camera: Camera, light: Light, **options: Any) -> Any:
+    """Captures a scene with options of capture() and decodes every frame: radial depth [m],
+    (F, H, W). Uses all estimates, regardless of their status."""
     raw = tofsmith.capture(scene, code, camera, signal_e_per_s=light.signal_e_per_s,
-                           ambient_e_per_s=light.ambient_e_per_s, falloff=falloff, frames=frames,
-                           reference_distance_m=reference_distance_m, seed=seed)
+                           ambient_e_per_s=light.ambient_e_per_s, **options)
     return tofsmith.Decoder(code, camera).decode(raw, planes=["depth_m"]).depth_m
 
 

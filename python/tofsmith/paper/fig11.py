@@ -59,8 +59,7 @@ def reproduce(study: Study) -> None:
 
 
 def draw_histograms(errors: Errors) -> Figure:
-    figure = new_figure(7.2, 2.6)
-    axes = figure.subplots(1, len(errors))
+    figure, axes = new_figure(7.2, 2.6, 1, len(errors))
     for axis, (density, of_codes) in zip(axes, errors.items()):
         end_mm = 3e3 * max(float(np.median(np.abs(error_m))) for error_m in of_codes.values())
         for name, error_m in of_codes.items():

@@ -93,8 +93,7 @@ def state_supplement(study: Study, found: dict[int, dict[int, list[Factorization
 
 
 def draw_residuals(found: dict[int, dict[int, list[Factorization]]]) -> Figure:
-    figure = new_figure(4.8, 2.8)
-    axis = figure.subplots()
+    figure, axis = new_figure(4.8, 2.8)
     for k, of_k in found.items():
         peaks = sorted(of_k)
         curves = [[one.best.residual_rms for one in of_k[peak]] for peak in peaks]

@@ -67,10 +67,8 @@ def measure_reading(study: Study, reading: str) -> Panels:
     panels = {}
     for title, limits in LIMITS.items():
         camera = paper_camera(*limits)
-        codes = [study.redesigned(k, camera) for k in ORDERS]
-        codes += [tofsmith.build_family(name, camera) for name in BASELINES]
-        measured = [measure(code, title) for code in codes] + ideal
-        panels[title] = {surface.name: surface for surface in measured}
+        measured = [measure(code, title) for code in study.codes(camera, ORDERS, BASELINES)] + ideal
+        panels[title] = {surface.report.code: surface for surface in measured}
     return panels
 
 
@@ -102,7 +100,7 @@ def state_baselines(study: Study, panels: Panels) -> None:
     inside = (linear.ratio >= 2) & (linear.ratio <= 5)
     study.state(HOLDS if inside.all() else IN_PART if inside.mean() > 0.5 else FAILS,
                 "At 5 f0 the redesigned codes are 2-5x better than sinusoid codes.",
-                f"{ours.name} at {DRAWN[2]}: {linear.factors()} times better than {SINUSOID}, "
+                f"{ours.report.code} at {DRAWN[2]}: {linear.factors()} times better than {SINUSOID}, "
                 f"{linear.mean:.2f} on average, within 2-5 at {inside.sum()} of {inside.size} light "
                 f"levels (circular: {circular.min():.2f} to {circular.max():.2f}); against {MULTI} "
                 f"{multi.factors()}, {multi.mean:.2f} on average.",

@@ -16,8 +16,7 @@ SAMPLES = 960
 
 def reproduce(study: Study) -> None:
     """Makes the figure: the window in time, its transfer function, and where that is 1/5."""
-    figure = new_figure(7.2, 2.6)
-    in_time, in_frequency = figure.subplots(1, 2)
+    figure, (in_time, in_frequency) = new_figure(7.2, 2.6, 1, 2)
     rows = []
     for limit, colour in zip(LIMITS_IN_F0, ("#009e73", "#0072b2", "#d55e00")):
         # 1. Response of an arm to an impulse.

@@ -84,8 +84,7 @@ def reproduce(study: Study) -> None:
     trials = []
     for limits, (peak, f_max) in LIMITS.items():
         camera = paper_camera(peak, f_max)
-        codes = [study.redesigned(4, camera)]
-        codes += [tofsmith.build_family(name, camera) for name in BASELINES]
+        codes = study.codes(camera, [4], BASELINES)
         for name, light in LIGHTS.items():
             errors_m = [errors_on_hand_m(hand, code, camera, light, seed=study.seed,
                                          reference_distance_m=distance_m) for code in codes]

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fig. 8: depth error of two-bucket cameras."""
 
-import tofsmith
-
 from . import surfaces
 from ._study import FAILS, HOLDS, IN_PART, Study
 from .cameras import paper_camera
@@ -47,11 +45,10 @@ def measure_camera(study: Study, f_max_in_f0: float) -> Panel:
     """Evaluates redesigned codes of 3 to 6 exposures, the baselines, and K = 4 with one tap."""
     one_tap = paper_camera(PEAK, f_max_in_f0)
     camera = one_tap.replace(name=f"{one_tap.name}-two-bucket", sensor={"taps": 2})
-    codes = [study.redesigned(k, camera) for k in (3, 4, 5, 6)]
-    codes += [tofsmith.build_family(name, camera) for name in BASELINES]
+    codes = study.codes(camera, (3, 4, 5, 6), BASELINES)
     measured = [surfaces.measure_surface(study, code, surfaces.with_light_levels(study, camera))
                 for code in codes]
     # The same light and time with one tap shows the gain of the second bucket.
     single = study.redesigned(4, one_tap).renamed(ONE_TAP)
     measured.append(surfaces.measure_surface(study, single, surfaces.with_light_levels(study, one_tap)))
-    return {surface.name: surface for surface in measured}
+    return {surface.report.code: surface for surface in measured}

@@ -20,16 +20,15 @@ def reproduce(study: Study) -> None:
     """Makes the figure: a pixel that sees a target at 0.7 m behind each filter."""
     # 1. The bench and its codes.
     camera = Camera("prototype")
-    ours = study.redesigned(4, camera)
-    baselines = [tofsmith.build_family(name, camera)
-                 for name in ("sinusoid-k4", "square-k4", "multifrequency-k5")]
+    codes = study.codes(camera, [4], ("sinusoid-k4", "square-k4", "multifrequency-k5"))
+    ours = codes[0]
 
     # 2. Delay the modulation in steps over the whole period, and measure each delay many times.
     measured = {code.name: [emulate_range(code, camera, light_behind_filter(density), target_m=0.7,
                                           shifts=study.pick(20, 5), estimates=study.pick(300, 30),
                                           seed=study.seed)
                             for density in OPTICAL_DENSITIES]
-                for code in (ours, *baselines)}
+                for code in codes}
     percent: dict[str, Any] = {}  # of the range, with standard errors: (filters, 2)
     for name, ranges in measured.items():
         errors_m = np.array([errors for _, errors in ranges])  # (filters, shifts, estimates)
@@ -59,8 +58,7 @@ def reproduce(study: Study) -> None:
 
 
 def draw_errors(percent: dict[str, Any]) -> Figure:
-    figure = new_figure(4.4, 3.0)
-    axis = figure.subplots()
+    figure, axis = new_figure(4.4, 3.0)
     for i, (name, values) in enumerate(percent.items()):
         axis.bar(np.arange(len(values)) + 0.2 * (i - 1.5), values[:, 0], 0.2, yerr=values[:, 1],
                  color=colour_of(name), label=name)

@@ -69,8 +69,7 @@ def centred(modulation: Waveform, demodulation: Waveform) -> tuple[Waveform, Wav
 def pair_panels(pairs: dict[str, Pair], code: str) -> Figure:
     """Plots one row per pair: nominal input (thin) and output (thick) of both arms, and the
     correlation function with its target (dotted)."""
-    figure = new_figure(7.2, 0.7 + 1.1 * len(pairs))
-    axes = figure.subplots(len(pairs), 3, squeeze=False, sharex="col")
+    figure, axes = new_figure(7.2, 0.7 + 1.1 * len(pairs), len(pairs), 3, squeeze=False, sharex="col")
     for row, (title, pair) in zip(axes, pairs.items()):
         time_ns = np.linspace(0, 1e9 / pair.camera.fundamental_frequency_hz, POINTS + 1)
         is_limited = pair.camera.light.impulse_response.kind != "none"

@@ -21,10 +21,6 @@ class Surface:
     rotation_bin: int
     report: DepthErrorReport
 
-    @property
-    def name(self) -> str:
-        return self.report.code
-
     def grid(self, values: str) -> Any:
         """Returns values of the report, such as "linear_mde_m", over the light levels."""
         return getattr(self.report, values).reshape(len(self.signal), len(self.ambient))
@@ -38,17 +34,13 @@ class Surface:
         return np.unique(self.report.ambient_e_per_s)
 
     @property
-    def linear_m(self) -> Any:
-        return self.grid("linear_mde_m")
-
-    @property
     def mean_m(self) -> float:
         """Returns the geometric mean of the linear error over all light levels."""
         return self.report.linear.geometric_mean_m
 
     def by_signal(self) -> Any:
         """Returns the geometric mean over ambient light, (signal,)."""
-        return np.exp(np.log(self.linear_m).mean(axis=1))
+        return np.exp(np.log(self.grid("linear_mde_m")).mean(axis=1))
 
 
 #: Surfaces of one camera by the names of codes, and of several cameras.
@@ -110,9 +102,10 @@ def compare(ours: Surface, *others: Surface) -> Comparison:
                           for values in ("linear_mde_m", "linear_se_m"))
     best = errors.argmin(axis=0)[None]
     theirs, theirs_se = (np.take_along_axis(of_all, best, 0)[0] for of_all in (errors, deviations))
-    gain, margin = theirs - ours.linear_m, 2 * np.hypot(theirs_se, ours.grid("linear_se_m"))
+    error_m = ours.grid("linear_mde_m")
+    gain, margin = theirs - error_m, 2 * np.hypot(theirs_se, ours.grid("linear_se_m"))
     better, worse = int((gain > margin).sum()), int((gain < -margin).sum())
-    return Comparison(theirs / ours.linear_m, better, gain.size - better - worse, worse)
+    return Comparison(theirs / error_m, better, gain.size - better - worse, worse)
 
 
 def together(comparisons: Sequence[Comparison]) -> Comparison:
@@ -146,12 +139,7 @@ def surface_rows(panels: Panels) -> list[dict[str, Any]]:
 def mean_rows(panels: Panels, **setting: str) -> list[dict[str, Any]]:
     """Returns one row per camera and code: geometric means over all light levels, and named
     levels."""
-    rows = []
-    for title, panel in panels.items():
-        for name, surface in panel.items():
-            row: dict[str, Any] = setting | {"setting": title, "code": name}
-            for kind in ("linear", "circular"):
-                row[f"{kind}_m"] = surface.report.of(kind).geometric_mean_m
-                row[f"{kind}_se_m"] = surface.report.of(kind).geometric_mean_se_m
-            rows.append(row)
-    return rows
+    return [setting | {"setting": title, "code": name}
+            | {kind + unit: getattr(surface.report.of(kind), "geometric_mean" + unit)
+               for kind in ("linear", "circular") for unit in ("_m", "_se_m")}
+            for title, panel in panels.items() for name, surface in panel.items()]

@@ -34,8 +34,7 @@ def reproduce(study: Study) -> None:
 
 def count_iterations(study: Study) -> None:
     """Checks Sec. 4 and 5: iterations of all random starts on every target of K = 3, 4 and 5."""
-    figure = new_figure(6.4, 3.0)
-    axis = figure.subplots()
+    figure, axis = new_figure(6.4, 3.0)
     for (words, (cameras, low, high)), colour in zip(CLAIMS.items(), ("#0072b2", "#d55e00")):
         within, below, texts = [], [], []
         for rule, (options, dashes) in RULES.items():
