@@ -28,7 +28,7 @@ namespace tofsmith::apps {
 
 namespace {
 
-constexpr std::array both_kinds = {DepthErrorKind::linear, DepthErrorKind::circular};
+constexpr auto& both_kinds = all_values<DepthErrorKind>;
 
 std::set<int> taps_of(const std::vector<AtlasEntry>& entries) {
   std::set<int> taps;
@@ -311,7 +311,7 @@ void add_atlas_command(CLI::App& app, Session& session) {
       "range from:to; 0: unlimited");
   command
       ->add_option("--error", arguments->error, "kind of depth error for which codes were designed")
-      ->check(one_of({"linear", "circular"}));
+      ->check(one_of<DepthErrorKind>());
   command->add_option("--file", arguments->file,
                       "atlas file, as written by scripts/atlas.sh (default: the built-in atlas)");
   command->add_option("-o,--output", arguments->output,

@@ -49,12 +49,6 @@ inline std::string option_of(std::string_view field) {
   return "--" + option;
 }
 
-template <typename Enum>
-std::vector<std::string> texts_of_words() {
-  const auto words = words_of(Enum{});
-  return {words.begin(), words.end()};
-}
-
 }  // namespace detail
 
 /// Adds an option with the help text, range, words, default and condition of a field. If the
@@ -77,12 +71,11 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
     added = detail::add_converted(command, option, field.value, help, [](const std::string& word) {
       return parse_word<Single>("", word);
     });
-    added->check(one_of(detail::texts_of_words<Single>()));
+    added->check(one_of<Single>());
     added->transform([](const std::string& name) {  // precedes the check
       return std::string(usual_word(Single{}, name));
     });
-    if constexpr (std::is_enum_v<Value>)
-      added->default_str(detail::texts_of_words<Value>().at(static_cast<std::size_t>(field.value)));
+    if constexpr (std::is_enum_v<Value>) added->default_str(std::string(name_of(field.value)));
   } else if constexpr (std::is_same_v<Single, std::filesystem::path>) {
     added = detail::add_converted(command, option, field.value, help,
                                   [](const std::string& text) { return Single(text); });

@@ -16,6 +16,7 @@
 #include "session.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/core/words.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith::apps {
@@ -88,6 +89,10 @@ inline CLI::Validator one_of(const std::vector<std::string>& words) {
     const std::string near = nearest_word(word, words);
     return near.empty() ? problem : problem + "; did you mean " + near + "?";
   });
+}
+template <HasWords Enum>
+CLI::Validator one_of() {
+  return one_of({all_words<Enum>.begin(), all_words<Enum>.end()});
 }
 
 inline CLI::Validator integer_in(int min, int max) {

@@ -86,7 +86,7 @@ void run(RequireArguments& arguments, const Session& session) {
   options.error_m = length_of(arguments.error);
   if (!arguments.vary.empty())
     options.vary_bandwidth = options.vary_power = options.vary_exposure = false;
-  for (const std::string& word : arguments.vary) switch (parse_camera_quantity(word)) {
+  for (const std::string& word : arguments.vary) switch (parse_word<CameraQuantity>("vary", word)) {
       case CameraQuantity::bandwidth:
         options.vary_bandwidth = true;
         break;
@@ -145,7 +145,7 @@ void add_require_command(CLI::App& app, Session& session) {
                    "three)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(one_of({"bandwidth", "power", "exposure"}));
+      ->check(one_of<CameraQuantity>());
   const FieldOptions options(*command, arguments->options);
   options.add("max_factor");
   options.add("exact");

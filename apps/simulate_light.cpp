@@ -72,7 +72,7 @@ void MultipathLightArguments::add_to(CLI::App& command) {
   command
       .add_option("--transient-origin", transient_origin_,
                   "bin of --transient at the depth of the pixel: the first one, or the peak")
-      ->check(one_of({"first", "peak"}))
+      ->check(one_of<TransientOrigin>())
       ->capture_default_str()
       ->needs(transient)
       ->group(for_experts);
@@ -130,7 +130,7 @@ SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera
     light.transients = read_transients(
         transient_, scene.height(), scene.width(),
         {.bin_s = *transient_bin_s_,
-         .origin = transient_origin_ == "peak" ? TransientOrigin::peak : TransientOrigin::first,
+         .origin = parse_word<TransientOrigin>("--transient-origin", transient_origin_),
          .subtract_median = transient_background_ == "median"});
   light.validate(scene, camera);
   return light;

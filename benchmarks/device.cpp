@@ -141,7 +141,7 @@ void report_filters(const Device& device, int runs) {
   const std::vector<float> raw = frame_of_a_box(table, height, width);
   const RawView view = RawView::interleaved(raw.data(), height, width, 4);
   const DeviceDecoder on_device(device, setup.decoder);
-  for (const FilterStrength strength : all_filter_strengths) {
+  for (const FilterStrength strength : all_values<FilterStrength>) {
     const Filter filter(table, FilterOptions::of(strength));
     const DeviceFilter filter_on_device(device, filter);
     FilteredFrame here, there;

@@ -63,7 +63,7 @@ void measure(const LightLevel& light, AskedFigures& asked) {
         seconds_of([&] { decoder.decode(view, view_of(OutputSet::all, planes)); });
     fmt::print("{} thread{}, {} noise: decoding all outputs {:.0f} frames/s\n", threads,
                threads == 1 ? "" : "s", light.noise, 1 / decoded);
-    for (const FilterStrength strength : all_filter_strengths) {
+    for (const FilterStrength strength : all_values<FilterStrength>) {
       const Filter filter(table, FilterOptions::of(strength));
       FilteredFrame filtered;
       const double seconds = seconds_of([&] { filter.apply(view, filtered); });

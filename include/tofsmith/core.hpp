@@ -29,6 +29,7 @@
 #include "tofsmith/core/raw_markers.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/core/words.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/decode/decoding_table.hpp"

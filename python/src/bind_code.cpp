@@ -64,7 +64,7 @@ Eigen::MatrixXd on_intervals(const Waveform& waveform) {
 }
 
 std::optional<TapOrder> order_of(const std::optional<std::string>& word) {
-  return word ? std::optional(parse_tap_order(*word)) : std::nullopt;
+  return word ? std::optional(parse_word<TapOrder>("tap order", *word)) : std::nullopt;
 }
 
 py::dict provenance_of(const CodeSet& code) {

@@ -91,7 +91,7 @@ void decode(const FrameBackend& backend, const py::array& raw_numbers, bool is_p
   const Planes planes(arrays, raw);
   PlaneCorrections corrections{maps_of(delay_offset_m, gain, raw), std::nullopt,
                                depth_limits(table, min_depth_m, max_depth_m)};
-  if (!mixed.empty()) corrections.mixed = parse_mixed_pixels(mixed);
+  if (!mixed.empty()) corrections.mixed = parse_word<MixedPixels>("mixed", mixed);
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());

@@ -234,7 +234,7 @@ void bind_design(py::module_& module) {
                return targets_from_table(name, to_matrix(table, "target"), samples, normalize);
              });
   module.def("suggested_exposures", [](const Camera& camera, const std::string& word) {
-    return suggested_exposures(camera, parse_design_method(word));
+    return suggested_exposures(camera, parse_word<DesignMethod>("method", word));
   });
   module.def("design", &design_dict);
   module.def("atlas", &atlas_list);

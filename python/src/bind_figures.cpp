@@ -130,7 +130,7 @@ py::array_t<float> read_raw(const std::string& path, const std::optional<int>& m
                             const std::string& dataset) {
   RawReadOptions options;
   options.measurements = measurements;
-  options.layout = parse_raw_layout(layout);
+  options.layout = parse_word<RawLayout>("layout", layout);
   if (format) options.format = read_raw_format(*format);
   options.dataset = dataset;
   RawFrames all;
@@ -149,7 +149,7 @@ py::tuple read_table(const std::string& path, int taps, const std::optional<std:
                      const std::optional<std::string>& axes, bool keep_end_point) {
   MeasuredTableOptions options;
   options.layout.taps = taps;
-  if (tap_order) options.layout.order = parse_tap_order(*tap_order);
+  if (tap_order) options.layout.order = parse_word<TapOrder>("tap order", *tap_order);
   if (axes) options.axes = parse_table_axes(*axes);
   options.keep_end_point = keep_end_point;
   MeasuredTableFile file = read_measured_table(path, options);

@@ -19,9 +19,10 @@ namespace tofsmith::python {
 FilterOptions filter_options(const py::dict& values) {
   const py::dict fields(values.attr("copy")());
   const py::object strength = fields.attr("pop")("strength", py::none());
-  FilterOptions options =
-      FilterOptions::of(strength.is_none() ? FilterStrength::normal
-                                           : parse_filter_strength(std::string(py::str(strength))));
+  FilterOptions options = FilterOptions::of(
+      strength.is_none()
+          ? FilterStrength::normal
+          : parse_word<FilterStrength>("filter strength", std::string(py::str(strength))));
   read_options(fields, "filter", options);
   options.validate();
   return options;

@@ -380,9 +380,8 @@ std::string interference_text(const OperatingInterference& others) {
   if (others.frequency_offset_hz != 0.0)
     text += fmt::format(", frequency offset {} Hz", others.frequency_offset_hz);
   if (others.spreads())
-    text += fmt::format(", random {} in {} part{} per exposure",
-                        spreadings[static_cast<std::size_t>(others.spreading)], others.parts,
-                        others.parts == 1 ? "" : "s");
+    text += fmt::format(", random {} in {} part{} per exposure", name_of(others.spreading),
+                        others.parts, others.parts == 1 ? "" : "s");
   return text;
 }
 

@@ -392,7 +392,7 @@ TEST_P(FilterDeviation, IncludesNoBiasOnAFlatPlane) {
   EXPECT_NEAR(repeats.squared_error_ratio(is_inner), 1.0, 0.2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Strengths, FilterDeviation, testing::ValuesIn(all_filter_strengths),
+INSTANTIATE_TEST_SUITE_P(Strengths, FilterDeviation, testing::ValuesIn(all_values<FilterStrength>),
                          [](const auto& strength) { return std::string(name_of(strength.param)); });
 
 }  // namespace

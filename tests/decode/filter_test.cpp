@@ -105,7 +105,7 @@ TEST_F(FilterOfFrames, SumsAreUnbiasedForAnyAlbedo) {
   const RawFrames raw = frame_seen(table, 96, 96, [&](int, int) {
     return Seen{70.3, 1e4 + 9e4 * albedo.uniform()};
   });
-  for (const FilterStrength strength : all_filter_strengths) {
+  for (const FilterStrength strength : all_values<FilterStrength>) {
     const DepthImage image =
         decode_filtered(setup.decoder, Filter(table, FilterOptions::of(strength)).apply(raw));
     double sum = 0.0, squares = 0.0;
@@ -275,7 +275,7 @@ TEST(Filter, IgnoresAndKeepsInvalidAndSaturatedPixels) {
     for (int x = 20; x < 26; ++x) raw.values[static_cast<std::size_t>((y * 48 + x) * 4 + 1)] = nan;
   for (int y = 30; y < 33; ++y)
     for (int x = 5; x < 9; ++x) raw.values[static_cast<std::size_t>((y * 48 + x) * 4)] = 1e4f;
-  for (const FilterStrength strength : all_filter_strengths) {
+  for (const FilterStrength strength : all_values<FilterStrength>) {
     const FilteredFrame filtered = Filter(table, FilterOptions::of(strength)).apply(raw);
     const DepthImage image = decode_filtered(decoder, filtered);
     for (int y = 0; y < 48; ++y)
@@ -428,7 +428,7 @@ TEST_F(FilterOfFrames, RejectsInvalidInputs) {
   EXPECT_THROW(Filter(table, {.windows = 0}), InvalidArgument);
   EXPECT_THROW(Filter(table, {.slope_rounds = -1}), InvalidArgument);
   EXPECT_THROW(Filter(table, {.trusted_pixels = 0.5}), InvalidArgument);
-  EXPECT_THROW(parse_filter_strength("heavy"), std::invalid_argument);
+  EXPECT_THROW(parse_word<FilterStrength>("filter strength", "heavy"), std::invalid_argument);
   const Filter filter(table);
   RawFrames raw{.frames = 1, .height = 2, .width = 2, .measurements = 5, .values = {}};
   raw.values.resize(20);
@@ -436,8 +436,8 @@ TEST_F(FilterOfFrames, RejectsInvalidInputs) {
   EXPECT_THROW(filter.apply(raw, 1), InvalidArgument);
   raw = {.frames = 1, .height = 0, .width = 2, .measurements = 4, .values = {}};
   EXPECT_THROW(filter.apply(raw), InvalidArgument);
-  for (const FilterStrength strength : all_filter_strengths)
-    EXPECT_EQ(parse_filter_strength(name_of(strength)), strength);
+  for (const FilterStrength strength : all_values<FilterStrength>)
+    EXPECT_EQ(parse_word<FilterStrength>("filter strength", name_of(strength)), strength);
 }
 
 TEST(Filter, KeepsFramesWithoutUsablePixels) {

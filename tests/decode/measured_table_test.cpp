@@ -103,7 +103,7 @@ TEST(MeasuredTable, ConstantsAlongAmbientLightChangeNoDepth) {
     lower.correlation.rowwise() -= constant * measured.ambient_gain.transpose();
     const DecodingTable shifted = make_decoding_table(lower, camera);
     EXPECT_GE(shifted.shot().minCoeff(), 0.0);
-    for (const FilterStrength strength : all_filter_strengths) {
+    for (const FilterStrength strength : all_values<FilterStrength>) {
       FilteredFrame of_table, of_lower;
       const DepthImage expected = decoded(as_is, raw, of_table, strength);
       const DepthImage image = decoded(shifted, raw, of_lower, strength);

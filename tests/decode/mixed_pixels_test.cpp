@@ -82,9 +82,9 @@ class MixedPixelsOfFrames : public testing::Test {
 };
 
 TEST(MixedPixels, NamesAreReadBack) {
-  for (const MixedPixels mixed : all_mixed_pixels)
-    EXPECT_EQ(parse_mixed_pixels(name_of(mixed)), mixed);
-  EXPECT_THROW(parse_mixed_pixels("near"), std::invalid_argument);
+  for (const MixedPixels mixed : all_values<MixedPixels>)
+    EXPECT_EQ(parse_word<MixedPixels>("mixed", name_of(mixed)), mixed);
+  EXPECT_THROW(parse_word<MixedPixels>("mixed", "near"), std::invalid_argument);
 }
 
 TEST_F(MixedPixelsOfFrames, MixturesOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
@@ -215,7 +215,7 @@ TEST_F(MixedPixelsOfFrames, PreviouslyFoundPixelsStayMarkedAndBelongToNoSurface)
                               .mixed = Image<std::uint8_t>(height, width, 0)};
   for (int y = 0; y < height; ++y) unfiltered.mixed(y, edge) = 1;
   unfiltered.mixed(5, 12) = 1;  // in the near surface
-  for (const MixedPixels mixed : all_mixed_pixels) {
+  for (const MixedPixels mixed : all_values<MixedPixels>) {
     const DepthImage before = setup.decoder.decode(filtered);
     DepthImage image = before;
     const std::int64_t count = mark_mixed_pixels(table, view_of_frame(filtered, 0), mixed,

@@ -177,7 +177,7 @@ TEST(DecodedPlanes, AreFilledByTheDeclaredMethods) {
   raw[0] = std::numeric_limits<float>::quiet_NaN();
   const RawView view =
       RawView::interleaved(raw.data(), 1, pixels, setup.decoder.table().measurements());
-  for (const DecodeMethod method : all_decode_methods) {
+  for (const DecodeMethod method : all_values<DecodeMethod>) {
     const bool is_multipath = method == DecodeMethod::two_return || method == DecodeMethod::tail;
     const auto backend = cpu_backend(make_decoder(method, setup.decoder.table()));
     const auto pipeline = backend->prepare({}, 1, pixels);

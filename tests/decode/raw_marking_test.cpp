@@ -53,7 +53,7 @@ RawView row_of(const std::vector<Number>& raw, int measurements) {
 
 std::vector<std::unique_ptr<const DepthDecoder>> all_decoders(const Camera& camera) {
   std::vector<std::unique_ptr<const DepthDecoder>> decoders;
-  for (const DecodeMethod method : all_decode_methods)
+  for (const DecodeMethod method : all_values<DecodeMethod>)
     decoders.push_back(make_decoder(
         method, decoding_table_of(method == DecodeMethod::unwrap ? "sinusoid-k4" : "hamiltonian-k5",
                                   camera)));

@@ -277,7 +277,7 @@ TEST(UnwrapDecoder, DeviationAgreesWithMonteCarloAtHighSignal) {
 }
 
 TEST(DecodeMethod, HasAName) {
-  for (const DecodeMethod method : all_decode_methods)
+  for (const DecodeMethod method : all_values<DecodeMethod>)
     EXPECT_EQ(parse_decode_method(name_of(method)), method);
   for (const UnwrapWeights weights : {UnwrapWeights::variance, UnwrapWeights::frequency})
     EXPECT_EQ(parse_unwrap_weights(name_of(weights)), weights);

@@ -73,10 +73,10 @@ void read_packed_dump(Input bytes) {
   format.packing = static_cast<RawPacking>(next(4));
   format.bits = 1 + next(32);
   format.align = static_cast<RawAlignment>(next(2));
-  format.big_endian = next(2) == 1;
+  format.byte_order = next(2) == 1 ? RawByteOrder::big : RawByteOrder::little;
   format.is_signed = next(2) == 1;
   format.layout = static_cast<RawOrder>(next(3));
-  format.subtract_taps = next(2) == 1;
+  format.taps = next(2) == 1 ? RawTaps::subtract : RawTaps::keep;
   format.header_bytes = next(9);
   format.row_bytes = next(2) * 64;
   format.rotate_deg = 90 * next(4);

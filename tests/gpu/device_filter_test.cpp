@@ -93,7 +93,7 @@ TEST_F(DeviceFiltering, EqualsTheFilter) {
     const DecodingTable table = clipped_at(decoding_table_of(code, camera), 5e4f);
     RawFrames raw = frame_of_surfaces(table, 71, 85);
     spoil(raw, 5e4f);
-    for (const FilterStrength strength : all_filter_strengths) {
+    for (const FilterStrength strength : all_values<FilterStrength>) {
       SCOPED_TRACE(name_of(strength));
       expect_what_the_filter_gives(device(), table, FilterOptions::of(strength),
                                    view_of_frame(raw, 0));
@@ -110,7 +110,7 @@ TEST_F(DeviceFiltering, RoundsLikeEveryInstructionSet) {
 // Simulates a device with other rounding: products are added in two steps instead of one.
 TEST_F(DeviceFiltering, OtherRoundingChangesFewValuesByMoreThanRoundingError) {
   const RawFrames raw = frame_of_surfaces(table_, 120, 160);
-  for (const FilterStrength strength : all_filter_strengths) {
+  for (const FilterStrength strength : all_values<FilterStrength>) {
     const Filter filter(table_, FilterOptions::of(strength));
     std::vector<FilteredFrame> there, here;
     for_each_target([&] {
@@ -178,7 +178,7 @@ TEST_F(DeviceFiltering, LargeFramesAreFilteredInBands) {
   spoil(raw, 1e3f);
   Image<std::uint8_t> left_out(230, 24);
   for (std::size_t i = 0; i < left_out.pixels.size(); ++i) left_out.pixels[i] = i % 17 == 0;
-  for (const FilterStrength strength : all_filter_strengths)
+  for (const FilterStrength strength : all_values<FilterStrength>)
     for (const double memory_mb : {0.001, 3.0})
       expect_what_the_filter_gives(device(), table_, FilterOptions::of(strength),
                                    view_of_frame(raw, 0), {.memory_mb = memory_mb}, left_out);

@@ -21,7 +21,9 @@ inline void describe(FieldVisitor& fields, Fan& fan) {
 }
 
 enum class Cooling { passive, forced };
-inline constexpr std::array<std::string_view, 2> coolings = {"passive", "forced"};
+constexpr std::array<std::string_view, 2> words_of(Cooling /*any*/) {
+  return {"passive", "forced"};
+}
 
 struct Housing {
   double depth_m = 0.1;
@@ -46,7 +48,7 @@ inline void describe(FieldVisitor& fields, Housing& housing) {
   fields.value(Key("share", "Share", left_open(0, 1)),
                NumberOrWord{housing.share, "any", housing.any_share});
   fields.value(Key("marks", "Marks"), RawNumberList{housing.marks});
-  fields.choice(Key("cooling", "Kind of cooling"), housing.cooling, coolings);
+  fields.choice(Key("cooling", "Kind of cooling"), housing.cooling);
   fields.value(Key("speed_hz", "Speed of the fan", above(0))
                    .required("50.0")
                    .only(housing.cooling == Cooling::forced, "cooling = \"forced\""),

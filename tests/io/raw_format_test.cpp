@@ -36,7 +36,7 @@ RawFormat random_format(RandomStream& random) {
     case 0:
       f.numbers = RawNumbers::floats;
       f.bits = 16 << below(3);
-      f.big_endian = below(2) == 0;
+      f.byte_order = below(2) == 0 ? RawByteOrder::big : RawByteOrder::little;
       break;
     case 1:
       f.packing = RawPacking::mipi;
@@ -53,7 +53,7 @@ RawFormat random_format(RandomStream& random) {
       f.bits = 1 + below(32);
       if (below(2) == 0) f.container_bits = f.bits <= 8 ? 8 << below(3) : f.bits <= 16 ? 16 : 32;
       f.align = below(2) == 0 ? RawAlignment::low : RawAlignment::high;
-      f.big_endian = below(2) == 0;
+      f.byte_order = below(2) == 0 ? RawByteOrder::big : RawByteOrder::little;
   }
   f.is_signed = f.numbers == RawNumbers::integers && below(2) == 0;
   if (f.is_signed && below(2) == 0) f.sign_bit = below(static_cast<unsigned>(f.bits));
@@ -82,8 +82,8 @@ RawFormat random_format(RandomStream& random) {
   f.flip_rows = below(2) == 0;
   f.flip_columns = below(2) == 0;
   f.rotate_deg = 90 * below(4);
-  f.subtract_taps = f.kept_measurements() % 2 == 0 && below(2) == 0;
-  if (!f.subtract_taps) f.black_level = below(3) * 16.0;
+  if (f.kept_measurements() % 2 == 0 && below(2) == 0) f.taps = RawTaps::subtract;
+  if (!f.subtracts_taps()) f.black_level = below(3) * 16.0;
   f.validate();
   return f;
 }
@@ -151,7 +151,7 @@ std::vector<double> expected_pixel(const RawFormat& f, const std::vector<double>
       pixel[static_cast<std::size_t>(measurement)] =
           sign * (numbers[place_in_file(f, frame, row, column, j)] - f.black_level);
   }
-  if (!f.subtract_taps) return pixel;
+  if (!f.subtracts_taps()) return pixel;
   std::vector<double> differences;
   for (std::size_t k = 0; k < pixel.size(); k += 2) differences.push_back(pixel[k] - pixel[k + 1]);
   return differences;
@@ -234,7 +234,7 @@ TEST(RawFormat, RejectsNumbersThatDoNotFitIntoTheirBits) {
   const std::vector<double> numbers = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 300, 4095};
   const FileBytes low = RawPacker(f).pack(numbers, 1);
   EXPECT_EQ(error_of_dump(f, low), "");
-  f.big_endian = true;
+  f.byte_order = RawByteOrder::big;
   EXPECT_THAT(error_of_dump(f, low),
               AllOf(HasSubstr("dump.bin: frame 0, image 1, row 1, number 1"),
                     HasSubstr("found 0x2c01 (11265), read as big-endian; expected 12 bits in the "
@@ -279,7 +279,7 @@ TEST(RawFormatToml, ReadsADescription) {
   EXPECT_EQ(f.bits, 11);
   EXPECT_EQ(f.packing, RawPacking::lsb_first);
   EXPECT_EQ(f.order, (std::vector<int>{2, 0, 3, 1}));
-  EXPECT_TRUE(f.is_signed && f.flip_rows && f.subtract_taps);
+  EXPECT_TRUE(f.is_signed && f.flip_rows && f.subtracts_taps());
   EXPECT_EQ(f.frame_bytes(), 4u * 2 * 11);
 }
 

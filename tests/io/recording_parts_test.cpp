@@ -205,7 +205,7 @@ class MixedRecording : public testing::Test {
 };
 
 TEST_F(MixedRecording, FilesEqualTheMarkedFrameEvenIfOnlyDepthIsWritten) {
-  for (const MixedPixels mixed : all_mixed_pixels) {
+  for (const MixedPixels mixed : all_values<MixedPixels>) {
     DepthImage expected = decoder_.decode(raw_);
     EXPECT_GT(mark_mixed_pixels(table_, view_of_frame(raw_, 0), mixed, DecodedView::of(expected)),
               raw_.height - 3);
@@ -231,7 +231,7 @@ TEST_F(MixedRecording, FilteredFramesAreFilteredAgainWithoutMixedPixels) {
   filter.apply(measured, filtered, {}, unfiltered.mixed);
 
   request_.filter = FilterOptions();
-  for (const MixedPixels mixed : all_mixed_pixels) {
+  for (const MixedPixels mixed : all_values<MixedPixels>) {
     DepthImage expected(raw_.height, raw_.width);
     decoder_.decode(filtered.view(), DecodedView::of(expected));
     mark_mixed_pixels(table_, filtered.view(), mixed, DecodedView::of(expected), {}, {},

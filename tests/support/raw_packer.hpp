@@ -92,7 +92,8 @@ class RawPacker {
   }
   void put_container(std::uint64_t word, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i)
-      bytes_.push_back(static_cast<std::byte>(word >> 8 * (format_.big_endian ? size - 1 - i : i)));
+      bytes_.push_back(static_cast<std::byte>(
+          word >> 8 * (format_.byte_order == RawByteOrder::big ? size - 1 - i : i)));
   }
   void put_row(const std::vector<double>& row) {
     if (format_.numbers == RawNumbers::floats) {

@@ -65,7 +65,8 @@ Answer about() {
   answer["cameras"] = built_in_camera_names();
   answer["scenes"] = built_in_scene_names();
   Json filters = Json::array({"off"}), methods = Json::array();
-  for (const FilterStrength strength : all_filter_strengths) filters.push_back(name_of(strength));
+  for (const FilterStrength strength : all_values<FilterStrength>)
+    filters.push_back(name_of(strength));
   for (const DesignMethod method :
        {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search, DesignMethod::best})
     methods.push_back(name_of(method));

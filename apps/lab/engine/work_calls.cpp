@@ -133,7 +133,8 @@ Answer scene_answer(const Request& request, const Progress& progress) {
   const int height = static_cast<int>(request.integer("height", 8, 1024, width * 3 / 4));
   const std::string filter_word = request.text("filter", "off");
   std::optional<FilterOptions> filter_options;
-  if (filter_word != "off") filter_options = FilterOptions::of(parse_filter_strength(filter_word));
+  if (filter_word != "off")
+    filter_options = FilterOptions::of(parse_word<FilterStrength>("filter strength", filter_word));
   CaptureOptions options;
   const OperatingPoint usual = capture_light(camera, options.reference_distance_m);
   options.signal_e_per_s = request.optional_number("signal").value_or(usual.signal_e_per_s);
@@ -191,7 +192,7 @@ Answer scene_answer(const Request& request, const Progress& progress) {
 Answer design_answer(const Request& request, const Progress& progress) {
   const Camera camera = request.camera();
   DesignOptions options;
-  options.method = parse_design_method(request.text("method", "best"));
+  options.method = parse_word<DesignMethod>("method", request.text("method", "best"));
   const double effort = request.optional_number("effort").value_or(0.1);
   options = with_effort(std::move(options), effort);
   if (request.has("exposures"))

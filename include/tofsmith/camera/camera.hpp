@@ -26,7 +26,9 @@ enum class NoiseModel {
   poisson,   ///< Poisson electrons plus Gaussian read noise
   gaussian,  ///< one Gaussian with the same variance, as in the paper
 };
-inline constexpr std::array<std::string_view, 2> noise_models = {"poisson", "gaussian"};
+constexpr std::array<std::string_view, 2> words_of(NoiseModel /*any*/) {
+  return {"poisson", "gaussian"};
+}
 
 /// Values that the sensor reads out of one exposure.
 enum class Readout {
@@ -36,21 +38,27 @@ enum class Readout {
   /// measure the same light, so that their noise is correlated. Dead time is ignored.
   rows,
 };
-inline constexpr std::array<std::string_view, 3> readouts = {"separate", "difference", "rows"};
+constexpr std::array<std::string_view, 3> words_of(Readout /*any*/) {
+  return {"separate", "difference", "rows"};
+}
 
 /// Coordinates in which zncc compares rows.
 enum class RowDecoder {
   whitened,  ///< in which the noise at the middle operating point is white
   plain,     ///< rows minus their mean, unweighted: for receivers that cannot whiten
 };
-inline constexpr std::array<std::string_view, 2> row_decoders = {"whitened", "plain"};
+constexpr std::array<std::string_view, 2> words_of(RowDecoder /*any*/) {
+  return {"whitened", "plain"};
+}
 
 /// Factor by which the sensor multiplies the light.
 enum class Demodulation {
   gain,    ///< in [0, 1], of taps that collect charge
   weight,  ///< in [-1, 1]: a mixer; shot noise grows with the square of the weight
 };
-inline constexpr std::array<std::string_view, 2> demodulations = {"gain", "signed"};
+constexpr std::array<std::string_view, 2> words_of(Demodulation /*any*/) {
+  return {"gain", "signed"};
+}
 
 struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave
@@ -138,7 +146,7 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                     "Poisson electrons with Gaussian read noise, or one Gaussian with the "
                     "same variance")
                     .basic(),
-                sensor.noise, noise_models);
+                sensor.noise);
   fields.value(Key("dark_current_e_per_s",
                    "Dark current of a tap; if the sensor reads out rows, of all time bins "
                    "together",
@@ -172,15 +180,15 @@ inline void describe(FieldVisitor& fields, Sensor& sensor) {
                     "Values that are read out: each tap, the difference of two taps, or rows, "
                     "which are weighted sums of the light in the time bins of one exposure")
                     .basic(),
-                sensor.readout, readouts);
+                sensor.readout);
   fields.choice(Key("decoder",
                     "Coordinates in which zncc compares rows: whitened, with white noise, or "
                     "plain, the rows minus their mean")
                     .only(sensor.readout == Readout::rows, "readout = \"rows\""),
-                sensor.decoder, row_decoders);
+                sensor.decoder);
   fields.choice(
       Key("demodulation", "Gain of taps in [0, 1], or signed weight of a mixer in [-1, 1]"),
-      sensor.demodulation, demodulations);
+      sensor.demodulation);
   fields.value(Key("readout_gap_s", "Dark time after each exposure", at_least(0)),
                sensor.readout_gap_s);
   fields.value(Key("frame_period_s",

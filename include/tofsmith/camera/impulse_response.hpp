@@ -47,7 +47,7 @@ constexpr std::array<std::string_view, 5> words_of(ImpulseResponse::Kind /*any*/
 inline void describe(FieldVisitor& fields, ImpulseResponse& response) {
   using Kind = ImpulseResponse::Kind;
   fields.choice(Key("kind", "Shape of the impulse response").required("\"hann\"").basic(),
-                response.kind, words_of(Kind{}));
+                response.kind);
   const Kind kind = response.kind;
   fields.value(
       Key("f_max_hz", "Frequency at which the Hann window attenuates by a factor of 5", above(0))

@@ -17,7 +17,7 @@ enum class FrameModes {
   azure_kinect,  ///< 640 x 576, 320 x 288, 512 x 512 or 1024 x 1024 of 1024 x 1024 pixels
 };
 
-inline constexpr std::array<std::string_view, 1> frame_modes_words = {"azure-kinect"};
+constexpr std::array<std::string_view, 1> words_of(FrameModes /*any*/) { return {"azure-kinect"}; }
 
 /// Pinhole model of the sensor with lens distortion, for point clouds and conversions between
 /// z-depth and radial distance.
@@ -85,9 +85,8 @@ inline void describe(FieldVisitor& fields, Lens& lens) {
             "Sensor whose smaller frames are cropped or binned; the pinhole parameters are "
             "those of the whole sensor");
   modes.only(is_pinhole, condition);
-  fields.part(modes, lens.frame_modes, [&](FieldVisitor& inner, FrameModes& sensor) {
-    inner.choice(modes, sensor, frame_modes_words);
-  });
+  fields.part(modes, lens.frame_modes,
+              [&](FieldVisitor& inner, FrameModes& sensor) { inner.choice(modes, sensor); });
 }
 
 /// Blur of simulated images and its sampling. It applies to light, not to depth: the expected
@@ -119,13 +118,14 @@ struct LensBlur {
   friend bool operator==(const LensBlur&, const LensBlur&) = default;
 };
 
-inline constexpr std::array<std::string_view, 3> lens_blur_kinds = {"none", "gaussian", "disc"};
+constexpr std::array<std::string_view, 3> words_of(LensBlur::Kind /*any*/) {
+  return {"none", "gaussian", "disc"};
+}
 
 /// Keys of [lens] that describe the blur.
 inline void describe(FieldVisitor& fields, LensBlur& blur) {
   using Kind = LensBlur::Kind;
-  fields.choice(Key("blur", "Point spread function of the lens in simulations"), blur.kind,
-                lens_blur_kinds);
+  fields.choice(Key("blur", "Point spread function of the lens in simulations"), blur.kind);
   fields.value(Key("blur_sigma_px",
                    "Standard deviation of the point spread function in each "
                    "direction",

@@ -30,16 +30,17 @@ enum class DepthErrorKind {
   linear,    ///< |decoded - true|, as in the paper: a wrap costs the whole range
   circular,  ///< the shorter way around the range
 };
-inline constexpr std::array<std::string_view, 2> depth_error_kinds = {"linear", "circular"};
-constexpr std::string_view name_of(DepthErrorKind kind) {
-  return depth_error_kinds[static_cast<std::size_t>(kind)];
+constexpr std::array<std::string_view, 2> words_of(DepthErrorKind /*any*/) {
+  return {"linear", "circular"};
 }
 
 enum class ErrorStatistic {
   mae,   ///< mean absolute error
   rmse,  ///< root mean square error; wrong lobes have more weight
 };
-inline constexpr std::array<std::string_view, 2> error_statistics = {"mae", "rmse"};
+constexpr std::array<std::string_view, 2> words_of(ErrorStatistic /*any*/) {
+  return {"mae", "rmse"};
+}
 
 /// Depth error that designs minimize.
 struct DepthErrorMeasure {
@@ -97,7 +98,9 @@ enum class Spreading {
   phases,  ///< independent delays, uniform over the period
   signs,   ///< independent delays of 0 or half a period, as in pseudo-noise modulation
 };
-inline constexpr std::array<std::string_view, 3> spreadings = {"none", "phases", "signs"};
+constexpr std::array<std::string_view, 3> words_of(Spreading /*any*/) {
+  return {"none", "phases", "signs"};
+}
 
 /// Other cameras that light the same surfaces. They are not synchronized: the phase of each is
 /// random in every frame, as is the exposure with which its frame begins.
@@ -137,7 +140,7 @@ inline void describe(FieldVisitor& fields, OperatingInterference& interference) 
   fields.choice(Key("spreading",
                     "Change of this camera's light and demodulation between the parts of an "
                     "exposure: random phases, or random signs as in pseudo-noise modulation"),
-                interference.spreading, spreadings);
+                interference.spreading);
   fields.value(
       Key("parts", "Number of equal parts of each exposure with independent phases or signs",
           closed(1, 4096))
@@ -192,11 +195,11 @@ inline void describe(FieldVisitor& fields, OperatingRange& range) {
                     "Definition of the depth error: circular (the shorter way around the range), "
                     "or linear as in the paper")
                     .basic(),
-                range.error, depth_error_kinds);
+                range.error);
   fields.choice(Key("statistic",
                     "Statistic by which design ranks codes and optimizes rows: mean absolute or "
                     "root mean square error"),
-                range.statistic, error_statistics);
+                range.statistic);
   fields.value(Key("albedo",
                    "Factor of the signal; \"uniform\": drawn uniformly from (0, 1) in every "
                    "trial",

@@ -12,7 +12,7 @@
 namespace tofsmith {
 
 enum class LightWaveform { square };
-inline constexpr std::array<std::string_view, 1> light_waveforms = {"square"};
+constexpr std::array<std::string_view, 1> words_of(LightWaveform /*any*/) { return {"square"}; }
 
 /// Square waves that a sensor chip can generate for its light and its gates, which are open for
 /// half of the period. Only for `design --method frequencies`.
@@ -38,7 +38,7 @@ struct SquareLight {
 /// Keys of square waves in [light].
 inline void describe(FieldVisitor& fields, SquareLight& square) {
   fields.choice(Key("waveform", "Waveform that the chip generates for light and gates"),
-                square.waveform, light_waveforms);
+                square.waveform);
   fields.value(Key("duty",
                    "Share of the period in which the square wave of the light is on; a list "
                    "contains all available values",

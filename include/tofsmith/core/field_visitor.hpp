@@ -15,6 +15,7 @@
 
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/core/words.hpp"
 
 namespace tofsmith {
 
@@ -100,10 +101,9 @@ class FieldVisitor {
     if (key.applies && !target) target.emplace();
     pass(key, target ? &*target : &blank);
   }
-  /// `words` are in the order of the enumerators.
-  template <typename Enum>
-  void choice(const Key& key, Enum& target, std::span<const std::string_view> words) {
-    WordChoice choice{words, static_cast<std::size_t>(target)};
+  template <HasWords Enum>
+  void choice(const Key& key, Enum& target) {
+    WordChoice choice{all_words<Enum>, static_cast<std::size_t>(target)};
     pass(key, &choice);
     target = static_cast<Enum>(choice.chosen);
   }

@@ -15,6 +15,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/range.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/core/words.hpp"
 
 namespace tofsmith {
 
@@ -64,43 +65,6 @@ struct OnlyWith {
 struct InDocuments {
   std::string_view name;
 };
-
-/// An enumeration with words_of(), which returns words in the order of the values.
-template <typename Enum>
-concept HasWords = std::is_enum_v<Enum> && requires(Enum any) {
-  words_of(any).size();
-};
-
-/// Returns the index of a word.
-/// @throws InvalidArgument "field = word; must be a, b or c"
-std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
-                          std::string_view word);
-
-/// Returns the usual word for a synonym, and other text unchanged. Enumerations with synonyms
-/// overload it.
-template <HasWords Enum>
-constexpr std::string_view usual_word(Enum /*any*/, std::string_view name) {
-  return name;
-}
-
-/// Returns the word of a value.
-/// @throws InvalidArgument if the value has no word
-template <HasWords Enum>
-std::string_view name_of(Enum value) {
-  const auto words = words_of(value);
-  const auto at = static_cast<std::size_t>(value);
-  if (at >= words.size())
-    reject("value of an enumeration", std::to_string(at),
-           "must be in [0, " + std::to_string(words.size() - 1) + "]");
-  return words[at];
-}
-
-/// @throws InvalidArgument for other words
-template <HasWords Enum>
-Enum parse_word(std::string_view field, std::string_view word) {
-  static constexpr auto words = words_of(Enum{});
-  return static_cast<Enum>(index_of_word(field, words, usual_word(Enum{}, word)));
-}
 
 /// Returns a help text with unit, default and condition, of which each may be empty: "longest delay
 /// of a second return [m] (default: a third of the range)".

@@ -65,7 +65,7 @@ struct LensDistortion {
 inline void describe(FieldVisitor& fields, LensDistortion& distortion, bool has_model = true,
                      bool has_coefficients = true, std::string_view condition = {}) {
   fields.choice(Key("distortion_model", "Formulas of the distortion").only(has_model, condition),
-                distortion.model, words_of(DistortionModel{}));
+                distortion.model);
   fields.value(Key("distortion",
                    "Coefficients in the order of OpenCV's calibrateCamera() or "
                    "fisheye::calibrate()",

@@ -26,10 +26,6 @@ enum class DecodeMethod {
   tail,        ///< TailDecoder
 };
 
-inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMethod::ml,
-                                                  DecodeMethod::unwrap, DecodeMethod::two_return,
-                                                  DecodeMethod::tail};
-
 constexpr std::array<std::string_view, 5> words_of(DecodeMethod /*any*/) {
   return {"zncc", "ml", "unwrap", "two-return", "tail"};
 }

@@ -37,16 +37,11 @@ enum class PixelStatus : std::uint8_t {
   too_far = 9,       ///< above the depth limits: no depth
 };
 
-inline constexpr std::array all_pixel_statuses = {
-    PixelStatus::ok,        PixelStatus::invalid,      PixelStatus::no_return,
-    PixelStatus::saturated, PixelStatus::low_signal,   PixelStatus::ambiguous,
-    PixelStatus::mixed,     PixelStatus::inconsistent, PixelStatus::too_near,
-    PixelStatus::too_far};
-
 constexpr std::array<std::string_view, 10> words_of(PixelStatus /*any*/) {
   return {"ok",        "invalid", "no_return",    "saturated", "low_signal",
           "ambiguous", "mixed",   "inconsistent", "too_near",  "too_far"};
 }
+inline constexpr auto all_pixel_statuses = all_values<PixelStatus>;
 
 /// Number of returns in a pixel, independent of PixelStatus.
 enum class ReturnStatus : std::uint8_t {
@@ -236,15 +231,8 @@ enum class MixedPixels {
   drop,   ///< no depth: NaN in every plane of floats
 };
 
-inline constexpr std::array all_mixed_pixels = {MixedPixels::label, MixedPixels::snap,
-                                                MixedPixels::drop};
-
 constexpr std::array<std::string_view, 3> words_of(MixedPixels /*any*/) {
   return {"label", "snap", "drop"};
-}
-/// @throws InvalidArgument for other words
-inline MixedPixels parse_mixed_pixels(std::string_view name) {
-  return parse_word<MixedPixels>("mixed", name);
 }
 
 /// Data before filtering.

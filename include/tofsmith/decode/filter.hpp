@@ -22,14 +22,8 @@ enum class FilterStrength {
   normal,  ///< 25 x 25 pixels, then one pass along slopes
   strong,  ///< 25 x 25 pixels, then two passes along slopes
 };
-inline constexpr std::array all_filter_strengths = {FilterStrength::light, FilterStrength::normal,
-                                                    FilterStrength::strong};
 constexpr std::array<std::string_view, 3> words_of(FilterStrength /*any*/) {
   return {"light", "normal", "strong"};
-}
-/// @throws InvalidArgument for an unknown name
-inline FilterStrength parse_filter_strength(std::string_view name) {
-  return parse_word<FilterStrength>("filter strength", name);
 }
 
 struct FilterOptions {

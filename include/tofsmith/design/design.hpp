@@ -38,10 +38,6 @@ enum class DesignMethod {
 constexpr std::array<std::string_view, 6> words_of(DesignMethod /*any*/) {
   return {"factorize", "optimize", "search", "best", "atlas", "frequencies"};
 }
-/// @throws InvalidArgument for unknown names
-inline DesignMethod parse_design_method(std::string_view name) {
-  return parse_word<DesignMethod>("method", name);
-}
 
 struct DesignOptions {
   DesignMethod method = DesignMethod::best;
@@ -243,10 +239,6 @@ enum class CameraQuantity {
 };
 constexpr std::array<std::string_view, 3> words_of(CameraQuantity /*any*/) {
   return {"bandwidth", "power", "exposure"};
-}
-/// @throws InvalidArgument for unknown names
-inline CameraQuantity parse_camera_quantity(std::string_view name) {
-  return parse_word<CameraQuantity>("vary", name);
 }
 
 /// Returns the camera with a quantity scaled by `factor` > 0.

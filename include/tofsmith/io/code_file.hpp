@@ -38,10 +38,6 @@ enum class TapOrder {
 constexpr std::array<std::string_view, 2> words_of(TapOrder /*any*/) {
   return {"blocked", "interleaved"};
 }
-/// @throws std::invalid_argument for any other word
-inline TapOrder parse_tap_order(std::string_view word) {
-  return parse_word<TapOrder>("tap order", word);
-}
 
 /// Interpretation of the columns of an NPZ file.
 struct TapLayout {

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/core/image.hpp"
+#include "tofsmith/core/words.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/depth_kind.hpp"
 #include "tofsmith/simulate/capture.hpp"
@@ -49,6 +52,9 @@ enum class TransientOrigin {
   first,  ///< the first bin begins at the pixel's depth
   peak,   ///< the brightest bin of all pixels together is at the pixel's depth
 };
+constexpr std::array<std::string_view, 2> words_of(TransientOrigin /*any*/) {
+  return {"first", "peak"};
+}
 
 /// Interpretation of transients.
 struct TransientFileOptions {

@@ -18,7 +18,9 @@ namespace tofsmith {
 
 /// Type of the numbers of a dump.
 enum class RawNumbers { integers, floats };
-inline constexpr std::array<std::string_view, 2> raw_number_words{"integer", "float"};
+constexpr std::array<std::string_view, 2> words_of(RawNumbers /*any*/) {
+  return {"integer", "float"};
+}
 
 /// Packing of integers into bytes.
 enum class RawPacking {
@@ -27,8 +29,9 @@ enum class RawPacking {
   lsb_first,  ///< a stream of bits, lowest bit of a byte first (RAW11, Mono10p, Mono12p)
   msb_first,  ///< a stream of bits, highest bit of a byte first
 };
-inline constexpr std::array<std::string_view, 4> raw_packing_words{"plain", "mipi", "lsb_first",
-                                                                   "msb_first"};
+constexpr std::array<std::string_view, 4> words_of(RawPacking /*any*/) {
+  return {"plain", "mipi", "lsb_first", "msb_first"};
+}
 
 /// Order of the numbers of a frame.
 enum class RawOrder {
@@ -36,28 +39,41 @@ enum class RawOrder {
   interleaved,  ///< (F, H, W, K): measurements of a pixel are adjacent
   by_rows,      ///< (F, H, K, W): K consecutive rows, one per measurement
 };
-inline constexpr std::array<std::string_view, 3> raw_order_words{"planar", "interleaved",
-                                                                 "by_rows"};
+constexpr std::array<std::string_view, 3> words_of(RawOrder /*any*/) {
+  return {"planar", "interleaved", "by_rows"};
+}
 
 /// Position of a number in a container that has more bits.
 enum class RawAlignment { low, high };
-inline constexpr std::array<std::string_view, 2> raw_alignment_words{"low", "high"};
+constexpr std::array<std::string_view, 2> words_of(RawAlignment /*any*/) { return {"low", "high"}; }
 
 /// Treatment of the unused bits of a container. checked: zero or copies of the sign.
 enum class UnusedBits { checked, ignored };
-inline constexpr std::array<std::string_view, 2> unused_bits_words{"checked", "ignored"};
+constexpr std::array<std::string_view, 2> words_of(UnusedBits /*any*/) {
+  return {"checked", "ignored"};
+}
 
 /// Encoding of negative integers.
 enum class SignEncoding { twos_complement, sign_magnitude };
-inline constexpr std::array<std::string_view, 2> sign_encoding_words{"twos_complement",
-                                                                     "sign_magnitude"};
+constexpr std::array<std::string_view, 2> words_of(SignEncoding /*any*/) {
+  return {"twos_complement", "sign_magnitude"};
+}
 
 /// Rows or columns whose numbers are negated.
 enum class NegatedLines { none, even, odd };
-inline constexpr std::array<std::string_view, 3> negated_lines_words{"none", "even", "odd"};
+constexpr std::array<std::string_view, 3> words_of(NegatedLines /*any*/) {
+  return {"none", "even", "odd"};
+}
 
-inline constexpr std::array<std::string_view, 2> raw_byte_order_words{"little", "big"};
-inline constexpr std::array<std::string_view, 2> raw_tap_words{"keep", "subtract"};
+/// Significance of the first byte of a number, lowest (little) or highest (big).
+enum class RawByteOrder { little, big };
+constexpr std::array<std::string_view, 2> words_of(RawByteOrder /*any*/) {
+  return {"little", "big"};
+}
+
+/// subtract: measurement 2 i minus measurement 2 i + 1.
+enum class RawTaps { keep, subtract };
+constexpr std::array<std::string_view, 2> words_of(RawTaps /*any*/) { return {"keep", "subtract"}; }
 
 /// Layout of the raw data of a sensor, from a `*.raw.toml` file; see docs/raw_formats.md.
 struct RawFormat {
@@ -70,9 +86,9 @@ struct RawFormat {
   int bits = 16;           ///< integers 1 to 32, floats 16, 32 or 64
   int container_bits = 0;  ///< plain: 8, 16 or 32; 0: the smallest
   RawPacking packing = RawPacking::plain;
-  RawAlignment align = RawAlignment::low;        ///< plain
-  UnusedBits unused_bits = UnusedBits::checked;  ///< plain
-  bool big_endian = false;                       ///< plain, and floats
+  RawAlignment align = RawAlignment::low;          ///< plain
+  UnusedBits unused_bits = UnusedBits::checked;    ///< plain
+  RawByteOrder byte_order = RawByteOrder::little;  ///< plain, and floats
   bool is_signed = false;
   SignEncoding sign_encoding = SignEncoding::twos_complement;  ///< signed
   std::optional<int> sign_bit;  ///< signed: bits above it are ignored
@@ -89,7 +105,7 @@ struct RawFormat {
   bool flip_columns = false;
   int rotate_deg = 0;  ///< clockwise, after flips
   double black_level = 0.0;
-  bool subtract_taps = false;  ///< measurement 2 i minus measurement 2 i + 1
+  RawTaps taps = RawTaps::keep;
 
   // Skipped bytes.
   int header_bytes = 0;
@@ -106,8 +122,9 @@ struct RawFormat {
   int measurement_of(int number) const;
   /// Number of measurements that are not skipped.
   int kept_measurements() const;
+  bool subtracts_taps() const { return taps == RawTaps::subtract; }
   int output_measurements() const {
-    return subtract_taps ? kept_measurements() / 2 : kept_measurements();
+    return subtracts_taps() ? kept_measurements() / 2 : kept_measurements();
   }
   /// Returns true if the rotation exchanges rows and columns.
   bool is_transposed() const { return rotate_deg % 180 != 0; }
@@ -156,7 +173,7 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                f.measurements);
   fields.value(Key("frames", "Frames in the file; 0: determined by its size", at_least(0)),
                f.frames);
-  fields.choice(Key("numbers", "Integers, or IEEE floats"), f.numbers, raw_number_words);
+  fields.choice(Key("numbers", "Integers, or IEEE floats"), f.numbers);
   fields.value(
       Key("bits", "Bits of a number: integers 1 to 32, floats 16, 32 or 64").required("12"),
       f.bits);
@@ -164,23 +181,23 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                    "Plain packing: size of the container of each number, 8, 16 or 32; 0: the "
                    "smallest for `bits`"),
                f.container_bits);
-  fields.choice(Key("packing", "Packing of integers into bytes"), f.packing, raw_packing_words);
+  fields.choice(Key("packing", "Packing of integers into bytes"), f.packing);
   fields.choice(Key("align",
                     "Plain packing: position of a number in its container, the low or the high "
                     "bits"),
-                f.align, raw_alignment_words);
+                f.align);
   fields.choice(Key("unused_bits",
                     "Plain packing: unused bits of a container must be zero or copies of the sign "
                     "(checked), or may have any value (ignored)"),
-                f.unused_bits, unused_bits_words);
+                f.unused_bits);
   fields.choice(Key("byte_order",
                     "Plain packing and floats: significance of the first byte, lowest (little) or "
                     "highest (big)"),
-                f.big_endian, raw_byte_order_words);
+                f.byte_order);
   fields.value(Key("signed", "Integers have a sign, e.g. differences A - B computed by the sensor"),
                f.is_signed);
   fields.choice(Key("sign_encoding", "Signed integers: encoding of negative numbers"),
-                f.sign_encoding, sign_encoding_words);
+                f.sign_encoding);
   fields.value(Key("sign_bit",
                    "Signed integers: index of the sign bit, from 0; bits above it are ignored; "
                    "default: the highest of `bits`",
@@ -188,11 +205,11 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
                f.sign_bit);
   fields.choice(Key("negate_rows",
                     "Rows of each image in the file, counted from 0, whose numbers are negated"),
-                f.negate_rows, negated_lines_words);
+                f.negate_rows);
   fields.choice(Key("negate_columns",
                     "Columns of each image in the file, counted from 0, whose numbers are "
                     "negated"),
-                f.negate_columns, negated_lines_words);
+                f.negate_columns);
   fields.value(Key("negate_from_row",
                    "First row of each image in the file whose numbers are negated, as in all "
                    "later rows, in addition to the other keys (two negations cancel); 0: none",
@@ -206,7 +223,7 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
   fields.choice(Key("layout",
                     "One image per measurement (planar), adjacent measurements of each pixel "
                     "(interleaved), or consecutive rows, one per measurement (by_rows)"),
-                f.layout, raw_order_words);
+                f.layout);
   fields.value(Key("order",
                    "Index of the code's measurement, from 0, for each number of a pixel in the "
                    "file; -1: skipped, as are numbers beyond the list; default: 0, 1, 2, ...",
@@ -215,7 +232,7 @@ inline void describe(FieldVisitor& fields, RawFormat& f) {
   fields.choice(Key("taps",
                     "Keep the taps, or subtract them: measurements 0 and 1, 2 and 3, ... (after "
                     "`order`) become the difference A - B"),
-                f.subtract_taps, raw_tap_words);
+                f.taps);
   fields.value(Key("flip_rows", "The file begins with the bottom row"), f.flip_rows);
   fields.value(Key("flip_columns", "Rows begin with the rightmost pixel"), f.flip_columns);
   fields.value(Key("rotate_deg",

@@ -41,10 +41,6 @@ enum class RawLayout {
 constexpr std::array<std::string_view, 2> words_of(RawLayout /*any*/) {
   return {"interleaved", "planar"};
 }
-/// @throws std::invalid_argument for any other word
-inline RawLayout parse_raw_layout(std::string_view name) {
-  return parse_word<RawLayout>("layout", name);
-}
 
 /// Options for reading a recording.
 struct RawReadOptions {

@@ -135,7 +135,7 @@ void check_measurements(const RawFormat& format, int expected, const std::string
       file,
       fmt::format("the description gives {} measurements per pixel; expected {}, as the code has{}",
                   found, expected,
-                  found > expected && !format.subtract_taps
+                  found > expected && !format.subtracts_taps()
                       ? " (order = [0, 1, ..., -1] skips images that are not measurements)"
                       : ""));
 }
@@ -249,26 +249,26 @@ std::string fitting_changes(const RawFormat& format, std::span<const std::byte> 
   RawFormat with_sign = format;
   with_sign.is_signed = true;
   if (!find_oversized_number(with_sign, row)) changes = "signed = true";
-  for (const bool big_endian : {format.big_endian, !format.big_endian})
-    for (const RawAlignment align : {RawAlignment::low, RawAlignment::high}) {
+  const bool is_big = format.byte_order == RawByteOrder::big;
+  for (const RawByteOrder order :
+       {format.byte_order, is_big ? RawByteOrder::little : RawByteOrder::big})
+    for (const RawAlignment align : all_values<RawAlignment>) {
       RawFormat other = format;
-      other.big_endian = big_endian;
+      other.byte_order = order;
       other.align = align;
       if (find_oversized_number(other, row)) continue;
       changes += fmt::format("{}byte_order = \"{}\" with align = \"{}\"",
-                             changes.empty() ? "" : " or ", raw_byte_order_words[big_endian],
-                             raw_alignment_words[static_cast<std::size_t>(align)]);
+                             changes.empty() ? "" : " or ", name_of(order), name_of(align));
     }
   return changes.empty() ? "check bits, byte_order and align" : changes + " would fit this row";
 }
 
 std::string oversized_problem(const RawFormat& format, const OversizedNumber& number,
                               std::span<const std::byte> row) {
-  const bool high = format.align == RawAlignment::high;
   return fmt::format(
       "found {0:#x} ({0}), read as {1}-endian; expected {2} bits in the {3} bits of the container, "
       "and no others: {4} (unused_bits = \"ignored\" ignores the other bits)",
-      number.container, raw_byte_order_words[format.big_endian], format.bits, high ? "high" : "low",
+      number.container, name_of(format.byte_order), format.bits, name_of(format.align),
       fitting_changes(format, row));
 }
 
@@ -408,7 +408,7 @@ void RawDumpReader::read_rows(int frame, int first_row, int rows, Number* number
   Block block;
   for (int r = 0; r < rows; r += block_rows) {
     read_block(frame, first_row + r, block_rows, block);
-    if (!negates && !f.subtract_taps) {
+    if (!negates && !f.subtracts_taps()) {
       for (const double number : block.pixels)
         *numbers++ = static_cast<Number>(measure(number, false));
       continue;
@@ -417,8 +417,8 @@ void RawDumpReader::read_rows(int frame, int first_row, int rows, Number* number
     for (int row = first_row + r; row < first_row + r + block_rows; ++row)
       for (int column = 0; column < width; ++column) {
         const bool negated = negates && is_negated(f, FilePlace(f, orientation, row, column));
-        for (int k = 0; k < outputs; ++k, number += f.subtract_taps ? 2 : 1)
-          *numbers++ = static_cast<Number>(!f.subtract_taps ? measure(*number, negated)
+        for (int k = 0; k < outputs; ++k, number += f.subtracts_taps() ? 2 : 1)
+          *numbers++ = static_cast<Number>(!f.subtracts_taps() ? measure(*number, negated)
                                            : negated ? marking_.difference(number[1], number[0])
                                                      : marking_.difference(number[0], number[1]));
       }

@@ -50,7 +50,8 @@ void validate_numbers(const RawFormat& f) {
   require(f.align == RawAlignment::low, "align", "high", "must be low unless packing is plain");
   require(f.unused_bits == UnusedBits::checked, "unused_bits", "ignored",
           "must be omitted unless packing is plain");
-  require(!f.big_endian, "byte_order", "big", "must be omitted unless packing is plain");
+  require(f.byte_order == RawByteOrder::little, "byte_order", "big",
+          "must be omitted unless packing is plain");
   if (f.packing == RawPacking::mipi) {
     require(f.bits == 10 || f.bits == 12 || f.bits == 14, "bits", f.bits,
             "must be 10, 12 or 14 for mipi (lsb_first packs any number)");
@@ -83,7 +84,7 @@ void validate_order(const RawFormat& f) {
     require(std::ranges::count(f.order, i) == 1, "order",
             fmt::format("[{}]", fmt::join(f.order, ", ")),
             fmt::format("must list each of 0 to {} once, and -1 for numbers to skip", kept - 1));
-  require(!f.subtract_taps || kept % 2 == 0, f.order.empty() ? "measurements" : "order", kept,
+  require(!f.subtracts_taps() || kept % 2 == 0, f.order.empty() ? "measurements" : "order", kept,
           "must be even to subtract taps");
 }
 
@@ -168,7 +169,7 @@ void RawFormat::validate() const {
   validate_signs(*this);
   validate_order(*this);
   validate_rows(*this);
-  require(!subtract_taps || black_level == 0.0, "black_level", black_level,
+  require(!subtracts_taps() || black_level == 0.0, "black_level", black_level,
           "must be omitted with taps = \"subtract\", which cancels it");
 }
 

@@ -23,8 +23,8 @@ double counted(std::uint64_t word, const RawFormat& format) {
 }
 
 template <typename Value>
-Value load(const std::byte* from, bool big_endian) {
-  if (!big_endian) return load_little_endian<Value>(from);
+Value load(const std::byte* from, RawByteOrder order) {
+  if (order == RawByteOrder::little) return load_little_endian<Value>(from);
   std::array<std::byte, sizeof(Value)> turned;
   std::reverse_copy(from, from + sizeof(Value), turned.begin());
   return load_little_endian<Value>(turned.data());
@@ -44,7 +44,7 @@ std::optional<OversizedNumber> find_oversized(const RawFormat& format,
                                               std::span<const std::byte> row) {
   for (std::size_t i = 0; (i + 1) * sizeof(Container) <= row.size(); ++i) {
     const std::uint64_t container =
-        load<Container>(row.data() + i * sizeof(Container), format.big_endian);
+        load<Container>(row.data() + i * sizeof(Container), format.byte_order);
     if (!fits(format, container, 8 * static_cast<int>(sizeof(Container))))
       return OversizedNumber{i, container};
   }
@@ -58,7 +58,7 @@ void unpack_plain(const RawFormat& format, const std::byte* from, std::span<doub
   const std::uint64_t mask = mask_of(format.bits);
   for (double& number : numbers) {
     number =
-        counted(std::uint64_t{load<Container>(from, format.big_endian)} >> shift & mask, format);
+        counted(std::uint64_t{load<Container>(from, format.byte_order)} >> shift & mask, format);
     from += sizeof(Container);
   }
 }
@@ -66,14 +66,14 @@ void unpack_plain(const RawFormat& format, const std::byte* from, std::span<doub
 template <typename Float>
 void unpack_floats(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
   for (double& number : numbers) {
-    number = static_cast<double>(load<Float>(from, format.big_endian));
+    number = static_cast<double>(load<Float>(from, format.byte_order));
     from += sizeof(Float);
   }
 }
 
 void unpack_halves(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
   for (double& number : numbers) {
-    number = static_cast<double>(float_of_half(load<std::uint16_t>(from, format.big_endian)));
+    number = static_cast<double>(float_of_half(load<std::uint16_t>(from, format.byte_order)));
     from += sizeof(std::uint16_t);
   }
 }
