@@ -53,14 +53,6 @@ int scaled_count(int count, double effort, ByEffort by_effort) {
   return std::max(by_effort.min, static_cast<int>(std::lround(effort * count)));
 }
 
-std::string_view name_of(ValueType type) {
-  constexpr std::array<std::string_view, 13> names = {
-      "boolean",     "integer",     "number", "text",           "numbers",
-      "integers",    "number_pair", "choice", "number_or_list", "number_or_word",
-      "raw_numbers", "path",        "table"};
-  return names.at(static_cast<std::size_t>(type));
-}
-
 KeyDescription& KeyList::add(const Key& key, ValueType type) {
   // A part of a part is absent by default.
   const bool may_be_absent = std::exchange(is_optional_, false) || parts_.size() > 2;

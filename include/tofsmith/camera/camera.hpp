@@ -26,9 +26,7 @@ enum class NoiseModel {
   poisson,   ///< Poisson electrons plus Gaussian read noise
   gaussian,  ///< one Gaussian with the same variance, as in the paper
 };
-constexpr std::array<std::string_view, 2> words_of(NoiseModel /*any*/) {
-  return {"poisson", "gaussian"};
-}
+constexpr auto words_of(NoiseModel /*any*/) { return word_list("poisson", "gaussian"); }
 
 /// Values that the sensor reads out of one exposure.
 enum class Readout {
@@ -38,27 +36,21 @@ enum class Readout {
   /// measure the same light, so that their noise is correlated. Dead time is ignored.
   rows,
 };
-constexpr std::array<std::string_view, 3> words_of(Readout /*any*/) {
-  return {"separate", "difference", "rows"};
-}
+constexpr auto words_of(Readout /*any*/) { return word_list("separate", "difference", "rows"); }
 
 /// Coordinates in which zncc compares rows.
 enum class RowDecoder {
   whitened,  ///< in which the noise at the middle operating point is white
   plain,     ///< rows minus their mean, unweighted: for receivers that cannot whiten
 };
-constexpr std::array<std::string_view, 2> words_of(RowDecoder /*any*/) {
-  return {"whitened", "plain"};
-}
+constexpr auto words_of(RowDecoder /*any*/) { return word_list("whitened", "plain"); }
 
 /// Factor by which the sensor multiplies the light.
 enum class Demodulation {
   gain,    ///< in [0, 1], of taps that collect charge
   weight,  ///< in [-1, 1]: a mixer; shot noise grows with the square of the weight
 };
-constexpr std::array<std::string_view, 2> words_of(Demodulation /*any*/) {
-  return {"gain", "signed"};
-}
+constexpr auto words_of(Demodulation /*any*/) { return word_list("gain", "signed"); }
 
 struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave

@@ -39,8 +39,8 @@ struct ImpulseResponse {
   friend bool operator==(const ImpulseResponse&, const ImpulseResponse&) = default;
 };
 
-constexpr std::array<std::string_view, 5> words_of(ImpulseResponse::Kind /*any*/) {
-  return {"none", "hann", "gaussian", "lowpass", "file"};
+constexpr auto words_of(ImpulseResponse::Kind /*any*/) {
+  return word_list("none", "hann", "gaussian", "lowpass", "file");
 }
 
 /// Keys of [light.impulse_response] and [sensor.impulse_response].

@@ -17,7 +17,7 @@ enum class FrameModes {
   azure_kinect,  ///< 640 x 576, 320 x 288, 512 x 512 or 1024 x 1024 of 1024 x 1024 pixels
 };
 
-constexpr std::array<std::string_view, 1> words_of(FrameModes /*any*/) { return {"azure-kinect"}; }
+constexpr auto words_of(FrameModes /*any*/) { return word_list("azure-kinect"); }
 
 /// Pinhole model of the sensor with lens distortion, for point clouds and conversions between
 /// z-depth and radial distance.
@@ -118,9 +118,7 @@ struct LensBlur {
   friend bool operator==(const LensBlur&, const LensBlur&) = default;
 };
 
-constexpr std::array<std::string_view, 3> words_of(LensBlur::Kind /*any*/) {
-  return {"none", "gaussian", "disc"};
-}
+constexpr auto words_of(LensBlur::Kind /*any*/) { return word_list("none", "gaussian", "disc"); }
 
 /// Keys of [lens] that describe the blur.
 inline void describe(FieldVisitor& fields, LensBlur& blur) {

@@ -30,17 +30,13 @@ enum class DepthErrorKind {
   linear,    ///< |decoded - true|, as in the paper: a wrap costs the whole range
   circular,  ///< the shorter way around the range
 };
-constexpr std::array<std::string_view, 2> words_of(DepthErrorKind /*any*/) {
-  return {"linear", "circular"};
-}
+constexpr auto words_of(DepthErrorKind /*any*/) { return word_list("linear", "circular"); }
 
 enum class ErrorStatistic {
   mae,   ///< mean absolute error
   rmse,  ///< root mean square error; wrong lobes have more weight
 };
-constexpr std::array<std::string_view, 2> words_of(ErrorStatistic /*any*/) {
-  return {"mae", "rmse"};
-}
+constexpr auto words_of(ErrorStatistic /*any*/) { return word_list("mae", "rmse"); }
 
 /// Depth error that designs minimize.
 struct DepthErrorMeasure {
@@ -98,9 +94,7 @@ enum class Spreading {
   phases,  ///< independent delays, uniform over the period
   signs,   ///< independent delays of 0 or half a period, as in pseudo-noise modulation
 };
-constexpr std::array<std::string_view, 3> words_of(Spreading /*any*/) {
-  return {"none", "phases", "signs"};
-}
+constexpr auto words_of(Spreading /*any*/) { return word_list("none", "phases", "signs"); }
 
 /// Other cameras that light the same surfaces. They are not synchronized: the phase of each is
 /// random in every frame, as is the exposure with which its frame begins.

@@ -12,7 +12,7 @@
 namespace tofsmith {
 
 enum class LightWaveform { square };
-constexpr std::array<std::string_view, 1> words_of(LightWaveform /*any*/) { return {"square"}; }
+constexpr auto words_of(LightWaveform /*any*/) { return word_list("square"); }
 
 /// Square waves that a sensor chip can generate for its light and its gates, which are open for
 /// half of the period. Only for `design --method frequencies`.

@@ -199,7 +199,10 @@ enum class ValueType {
   path,
   table,
 };
-std::string_view name_of(ValueType type);
+constexpr auto words_of(ValueType /*any*/) {
+  return word_list("boolean", "integer", "number", "text", "numbers", "integers", "number_pair",
+                   "choice", "number_or_list", "number_or_word", "raw_numbers", "path", "table");
+}
 
 struct KeyDescription {
   std::string name;  ///< with tables: "light.impulse_response.f_max_hz"

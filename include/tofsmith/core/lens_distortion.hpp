@@ -20,8 +20,8 @@ enum class DistortionModel {
   rational_6kt,  ///< Azure Kinect: radial (rational), with another tangential term
 };
 
-constexpr std::array<std::string_view, 3> words_of(DistortionModel /*any*/) {
-  return {"opencv", "fisheye", "rational-6kt"};
+constexpr auto words_of(DistortionModel /*any*/) {
+  return word_list("opencv", "fisheye", "rational-6kt");
 }
 
 /// Moves image points from their ideal pinhole position. Positions are in the plane z = 1: x/z and

@@ -13,6 +13,14 @@
 
 namespace tofsmith {
 
+/// Returns the words of an enumeration:
+///
+///   constexpr auto words_of(Fruit /*any*/) { return word_list("apple", "pear"); }
+template <typename... Words>
+constexpr std::array<std::string_view, sizeof...(Words)> word_list(Words... words) {
+  return {words...};
+}
+
 /// An enumeration with words_of(), which returns words in the order of the values 0, 1, ...
 template <typename Enum>
 concept HasWords = std::is_enum_v<Enum> && requires(Enum any) {

@@ -26,8 +26,8 @@ enum class DecodeMethod {
   tail,        ///< TailDecoder
 };
 
-constexpr std::array<std::string_view, 5> words_of(DecodeMethod /*any*/) {
-  return {"zncc", "ml", "unwrap", "two-return", "tail"};
+constexpr auto words_of(DecodeMethod /*any*/) {
+  return word_list("zncc", "ml", "unwrap", "two-return", "tail");
 }
 /// @throws InvalidArgument for other words
 inline DecodeMethod parse_decode_method(std::string_view name) {

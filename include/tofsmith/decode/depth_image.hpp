@@ -37,9 +37,9 @@ enum class PixelStatus : std::uint8_t {
   too_far = 9,       ///< above the depth limits: no depth
 };
 
-constexpr std::array<std::string_view, 10> words_of(PixelStatus /*any*/) {
-  return {"ok",        "invalid", "no_return",    "saturated", "low_signal",
-          "ambiguous", "mixed",   "inconsistent", "too_near",  "too_far"};
+constexpr auto words_of(PixelStatus /*any*/) {
+  return word_list("ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous", "mixed",
+                   "inconsistent", "too_near", "too_far");
 }
 inline constexpr auto all_pixel_statuses = all_values<PixelStatus>;
 
@@ -52,8 +52,8 @@ enum class ReturnStatus : std::uint8_t {
                    ///< possibly biased
 };
 
-constexpr std::array<std::string_view, 4> words_of(ReturnStatus /*any*/) {
-  return {"none", "single", "two", "unresolved"};
+constexpr auto words_of(ReturnStatus /*any*/) {
+  return word_list("none", "single", "two", "unresolved");
 }
 
 /// Origin of a plane, and whether it is written by default.
@@ -231,9 +231,7 @@ enum class MixedPixels {
   drop,   ///< no depth: NaN in every plane of floats
 };
 
-constexpr std::array<std::string_view, 3> words_of(MixedPixels /*any*/) {
-  return {"label", "snap", "drop"};
-}
+constexpr auto words_of(MixedPixels /*any*/) { return word_list("label", "snap", "drop"); }
 
 /// Data before filtering.
 struct UnfilteredPixels {

@@ -22,9 +22,7 @@ enum class FilterStrength {
   normal,  ///< 25 x 25 pixels, then one pass along slopes
   strong,  ///< 25 x 25 pixels, then two passes along slopes
 };
-constexpr std::array<std::string_view, 3> words_of(FilterStrength /*any*/) {
-  return {"light", "normal", "strong"};
-}
+constexpr auto words_of(FilterStrength /*any*/) { return word_list("light", "normal", "strong"); }
 
 struct FilterOptions {
   int windows = 2;

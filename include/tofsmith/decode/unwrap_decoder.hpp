@@ -19,9 +19,7 @@ enum class UnwrapWeights {
   frequency,  ///< f^2, as if all phases had the same noise
 };
 
-constexpr std::array<std::string_view, 2> words_of(UnwrapWeights /*any*/) {
-  return {"variance", "frequency"};
-}
+constexpr auto words_of(UnwrapWeights /*any*/) { return word_list("variance", "frequency"); }
 /// @throws InvalidArgument for other words
 inline UnwrapWeights parse_unwrap_weights(std::string_view name) {
   return parse_word<UnwrapWeights>("unwrap weights", name);

@@ -79,9 +79,7 @@ enum class ChipMetric {
   /// "Revisiting Optimal Coding for I-ToF under Practical Sensor Constraints" (CVPR 2026).
   known_light,
 };
-constexpr std::array<std::string_view, 2> words_of(ChipMetric /*any*/) {
-  return {"unknown-light", "known-light"};
-}
+constexpr auto words_of(ChipMetric /*any*/) { return word_list("unknown-light", "known-light"); }
 
 struct ChipSearchOptions {
   int exposures = 1;  ///< E; 3 to 16 measurements with the camera's taps

@@ -23,8 +23,8 @@ enum class Termination {
   stalled,    ///< rounding prevents further progress
   iteration_limit,
 };
-constexpr std::array<std::string_view, 4> words_of(Termination /*any*/) {
-  return {"not_run", "converged", "stalled", "iteration_limit"};
+constexpr auto words_of(Termination /*any*/) {
+  return word_list("not_run", "converged", "stalled", "iteration_limit");
 }
 
 enum class DesignMethod {
@@ -35,8 +35,8 @@ enum class DesignMethod {
   atlas,        ///< rank known codes only
   frequencies,  ///< square waves at frequencies of the chip
 };
-constexpr std::array<std::string_view, 6> words_of(DesignMethod /*any*/) {
-  return {"factorize", "optimize", "search", "best", "atlas", "frequencies"};
+constexpr auto words_of(DesignMethod /*any*/) {
+  return word_list("factorize", "optimize", "search", "best", "atlas", "frequencies");
 }
 
 struct DesignOptions {
@@ -237,8 +237,8 @@ enum class CameraQuantity {
   power,      ///< of the modulated light
   exposure,   ///< integration time
 };
-constexpr std::array<std::string_view, 3> words_of(CameraQuantity /*any*/) {
-  return {"bandwidth", "power", "exposure"};
+constexpr auto words_of(CameraQuantity /*any*/) {
+  return word_list("bandwidth", "power", "exposure");
 }
 
 /// Returns the camera with a quantity scaled by `factor` > 0.

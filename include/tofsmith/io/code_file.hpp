@@ -35,9 +35,7 @@ enum class TapOrder {
   blocked,      ///< tap 0 of all exposures, then tap 1 of all exposures, ...
   interleaved,  ///< all taps of exposure 0, then all taps of exposure 1, ...
 };
-constexpr std::array<std::string_view, 2> words_of(TapOrder /*any*/) {
-  return {"blocked", "interleaved"};
-}
+constexpr auto words_of(TapOrder /*any*/) { return word_list("blocked", "interleaved"); }
 
 /// Interpretation of the columns of an NPZ file.
 struct TapLayout {

@@ -52,9 +52,7 @@ enum class TransientOrigin {
   first,  ///< the first bin begins at the pixel's depth
   peak,   ///< the brightest bin of all pixels together is at the pixel's depth
 };
-constexpr std::array<std::string_view, 2> words_of(TransientOrigin /*any*/) {
-  return {"first", "peak"};
-}
+constexpr auto words_of(TransientOrigin /*any*/) { return word_list("first", "peak"); }
 
 /// Interpretation of transients.
 struct TransientFileOptions {

@@ -15,7 +15,7 @@ enum class DepthKind {
   z,       ///< along the optical axis
 };
 
-constexpr std::array<std::string_view, 2> words_of(DepthKind /*any*/) { return {"radial", "z"}; }
+constexpr auto words_of(DepthKind /*any*/) { return word_list("radial", "z"); }
 /// @throws std::invalid_argument for any other word
 inline DepthKind parse_depth_kind(std::string_view name) {
   return parse_word<DepthKind>("kind", name);

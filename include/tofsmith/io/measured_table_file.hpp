@@ -35,7 +35,7 @@ enum class TableAxes {
   samples_first,       ///< (N, K)
   measurements_first,  ///< (K, N)
 };
-constexpr std::array<std::string_view, 2> words_of(TableAxes /*any*/) { return {"nk", "kn"}; }
+constexpr auto words_of(TableAxes /*any*/) { return word_list("nk", "kn"); }
 /// @throws std::invalid_argument for any other word
 inline TableAxes parse_table_axes(std::string_view word) {
   return parse_word<TableAxes>("axes of the table", word);

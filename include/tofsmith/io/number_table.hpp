@@ -18,9 +18,7 @@ namespace tofsmith {
 /// Decimal separator of the numbers in a text.
 enum class DecimalMark { automatic, point, comma };
 
-constexpr std::array<std::string_view, 3> words_of(DecimalMark /*any*/) {
-  return {"auto", "point", "comma"};
-}
+constexpr auto words_of(DecimalMark /*any*/) { return word_list("auto", "point", "comma"); }
 
 /// Constraints on the interpretation of a text.
 struct NumberTableOptions {

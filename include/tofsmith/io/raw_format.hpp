@@ -18,9 +18,7 @@ namespace tofsmith {
 
 /// Type of the numbers of a dump.
 enum class RawNumbers { integers, floats };
-constexpr std::array<std::string_view, 2> words_of(RawNumbers /*any*/) {
-  return {"integer", "float"};
-}
+constexpr auto words_of(RawNumbers /*any*/) { return word_list("integer", "float"); }
 
 /// Packing of integers into bytes.
 enum class RawPacking {
@@ -29,8 +27,8 @@ enum class RawPacking {
   lsb_first,  ///< a stream of bits, lowest bit of a byte first (RAW11, Mono10p, Mono12p)
   msb_first,  ///< a stream of bits, highest bit of a byte first
 };
-constexpr std::array<std::string_view, 4> words_of(RawPacking /*any*/) {
-  return {"plain", "mipi", "lsb_first", "msb_first"};
+constexpr auto words_of(RawPacking /*any*/) {
+  return word_list("plain", "mipi", "lsb_first", "msb_first");
 }
 
 /// Order of the numbers of a frame.
@@ -39,41 +37,33 @@ enum class RawOrder {
   interleaved,  ///< (F, H, W, K): measurements of a pixel are adjacent
   by_rows,      ///< (F, H, K, W): K consecutive rows, one per measurement
 };
-constexpr std::array<std::string_view, 3> words_of(RawOrder /*any*/) {
-  return {"planar", "interleaved", "by_rows"};
-}
+constexpr auto words_of(RawOrder /*any*/) { return word_list("planar", "interleaved", "by_rows"); }
 
 /// Position of a number in a container that has more bits.
 enum class RawAlignment { low, high };
-constexpr std::array<std::string_view, 2> words_of(RawAlignment /*any*/) { return {"low", "high"}; }
+constexpr auto words_of(RawAlignment /*any*/) { return word_list("low", "high"); }
 
 /// Treatment of the unused bits of a container. checked: zero or copies of the sign.
 enum class UnusedBits { checked, ignored };
-constexpr std::array<std::string_view, 2> words_of(UnusedBits /*any*/) {
-  return {"checked", "ignored"};
-}
+constexpr auto words_of(UnusedBits /*any*/) { return word_list("checked", "ignored"); }
 
 /// Encoding of negative integers.
 enum class SignEncoding { twos_complement, sign_magnitude };
-constexpr std::array<std::string_view, 2> words_of(SignEncoding /*any*/) {
-  return {"twos_complement", "sign_magnitude"};
+constexpr auto words_of(SignEncoding /*any*/) {
+  return word_list("twos_complement", "sign_magnitude");
 }
 
 /// Rows or columns whose numbers are negated.
 enum class NegatedLines { none, even, odd };
-constexpr std::array<std::string_view, 3> words_of(NegatedLines /*any*/) {
-  return {"none", "even", "odd"};
-}
+constexpr auto words_of(NegatedLines /*any*/) { return word_list("none", "even", "odd"); }
 
 /// Significance of the first byte of a number, lowest (little) or highest (big).
 enum class RawByteOrder { little, big };
-constexpr std::array<std::string_view, 2> words_of(RawByteOrder /*any*/) {
-  return {"little", "big"};
-}
+constexpr auto words_of(RawByteOrder /*any*/) { return word_list("little", "big"); }
 
 /// subtract: measurement 2 i minus measurement 2 i + 1.
 enum class RawTaps { keep, subtract };
-constexpr std::array<std::string_view, 2> words_of(RawTaps /*any*/) { return {"keep", "subtract"}; }
+constexpr auto words_of(RawTaps /*any*/) { return word_list("keep", "subtract"); }
 
 /// Layout of the raw data of a sensor, from a `*.raw.toml` file; see docs/raw_formats.md.
 struct RawFormat {

@@ -38,9 +38,7 @@ enum class RawLayout {
   planar,       ///< (K, H, W) or (F, K, H, W): one image per measurement
 };
 
-constexpr std::array<std::string_view, 2> words_of(RawLayout /*any*/) {
-  return {"interleaved", "planar"};
-}
+constexpr auto words_of(RawLayout /*any*/) { return word_list("interleaved", "planar"); }
 
 /// Options for reading a recording.
 struct RawReadOptions {

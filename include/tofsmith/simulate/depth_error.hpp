@@ -24,9 +24,7 @@ enum class DepthSampling {
   uniform,  ///< anywhere in the range
   bins,     ///< favours codes that are wrong in between
 };
-constexpr std::array<std::string_view, 2> words_of(DepthSampling /*any*/) {
-  return {"uniform", "bins"};
-}
+constexpr auto words_of(DepthSampling /*any*/) { return word_list("uniform", "bins"); }
 
 inline constexpr double default_outlier_threshold_m = 0.5;
 inline constexpr Help outlier_threshold_help{"circular error above which a depth is an outlier"};

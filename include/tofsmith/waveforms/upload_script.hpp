@@ -28,15 +28,11 @@ enum class WaveHeader {
   plain,    ///< as in Siglent's application note
   minimal,  ///< name and data only
 };
-constexpr std::array<std::string_view, 3> words_of(WaveHeader /*any*/) {
-  return {"length", "plain", "minimal"};
-}
+constexpr auto words_of(WaveHeader /*any*/) { return word_list("length", "plain", "minimal"); }
 
 /// Filter of the output of a Keysight generator.
 enum class OutputFilter { step, normal, off };
-constexpr std::array<std::string_view, 3> words_of(OutputFilter /*any*/) {
-  return {"step", "normal", "off"};
-}
+constexpr auto words_of(OutputFilter /*any*/) { return word_list("step", "normal", "off"); }
 
 struct UploadRequest {
   std::vector<UploadChannel> channels;
