@@ -47,6 +47,8 @@ void add(std::vector<SharedScript>& scripts, const UploadScript& script) {
 ExportedScripts export_scripts(const WaveformExport& exported) {
   const std::vector<GeneratorModel> models = models_of_format(exported.format.name);
   ExportedScripts result;
+  if (models.empty() && exported.format.content == FormatContent::one_waveform)
+    result.problem = "only siglent-wvdt16, keysight-arb and tek-tfw have scripts";
   for (int exposure = 1; exposure <= exported.exposures; ++exposure) {
     UploadRequest request;
     request.channels = selected_channels(exported, {.exposure = exposure});

@@ -134,7 +134,7 @@ ExportedCode write_export(const CodeSet& code, const Camera& camera, const Expor
   exported.notes = rate_notes(exported.waveforms, camera, request.options);
   ExportedScripts scripts = export_scripts(exported.waveforms);
   exported.scripts = std::move(scripts.files);
-  if (!scripts.problem.empty() && exported.notes.empty())
+  if (!scripts.problem.empty())
     exported.notes.push_back("no SCPI script was written: " + scripts.problem);
   for (std::string& note : duty_notes(exported, camera, request.options))
     exported.notes.push_back(std::move(note));

@@ -35,7 +35,12 @@ class Export(CommandLineTest):
         (note,) = notes("csv")
         for words in ("3600 MHz", "2400 MHz", "--rate 2.4e+09"):
             self.assertIn(words, note)
-        self.assertIn("1000 MHz", notes("keysight-arb")[0])
+        rate, script = notes("keysight-arb")
+        self.assertIn("1000 MHz", rate)
+        self.assertIn("no SCPI script was written: modulation_1 sample_rate_hz", script)
+        self.assertEqual(notes("siglent-csv", "--rate", "1.2e9"),
+                         ["no SCPI script was written: only siglent-wvdt16, keysight-arb and tek-tfw "
+                          "have scripts"])
         self.assertEqual(notes("csv", "--rate", "3.6e9"), [])  # explicitly requested rates are not
                                                                # questioned
         self.assertEqual(notes("csv", "--samples", "120"), [])

@@ -161,7 +161,7 @@ struct ExportedScript {
 
 struct ExportedScripts {
   std::vector<ExportedScript> files;
-  std::string problem;  ///< of the fastest model, if none can output the tables
+  std::string problem;  ///< reason why files of a generator have no script; of the fastest model
 };
 
 /// Returns scripts for each exposure of a code on two-channel generators with the format of the
