@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <exception>
 #include <new>
@@ -12,10 +11,8 @@
 
 #include "code_call.hpp"
 #include "request.hpp"
-#include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/filter.hpp"
-#include "tofsmith/design/design.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/version.hpp"
@@ -39,39 +36,13 @@ constexpr std::array shown_families = {
 Answer about() {
   Answer answer;
   answer["version"] = TOFSMITH_VERSION;
-  Json families = Json::array(), patterns = Json::array();
-  const std::vector<FamilyDescription> known = list_families();
-  const auto title_of = [&](std::string_view name) -> std::string {
-    // Family with the longest common prefix.
-    std::string title;
-    std::size_t longest = 0;
-    for (const FamilyDescription& family : known) {
-      const auto end =
-          std::mismatch(name.begin(), name.end(), family.name.begin(), family.name.end());
-      const auto common = static_cast<std::size_t>(end.first - name.begin());
-      if (common > longest) {
-        longest = common;
-        title = family.description;
-      }
-    }
-    return title;
-  };
-  for (const char* name : shown_families)
-    families.push_back({{"name", name}, {"title", title_of(name)}});
-  for (const FamilyDescription& family : known)
-    patterns.push_back(fmt::format("{}: {}", family.name, family.description));
-  answer["families"] = std::move(families);
-  answer["pattern"] = std::move(patterns);
+  answer["families"] = shown_families;
   answer["cameras"] = built_in_camera_names();
   answer["scenes"] = built_in_scene_names();
-  Json filters = Json::array({"off"}), methods = Json::array();
+  Json filters = Json::array({"off"});
   for (const FilterStrength strength : all_values<FilterStrength>)
     filters.push_back(name_of(strength));
-  for (const DesignMethod method :
-       {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search, DesignMethod::best})
-    methods.push_back(name_of(method));
   answer["filters"] = std::move(filters);
-  answer["methods"] = std::move(methods);
   return answer;
 }
 

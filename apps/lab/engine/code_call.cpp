@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/camera/forward_model.hpp"
@@ -76,12 +77,27 @@ void add_bounds(Json& field, const Key& key) {
   field["log"] = from > 0.0 && to / from >= 50.0;
 }
 
+/// Returns a key in words without its first table and its unit, such as "impulse response cutoff".
+std::string label_of(std::string_view key) {
+  std::string_view name = key.substr(key.find('.') + 1);
+  if (const std::string_view unit = unit_of_key(key); !unit.empty()) {
+    std::size_t end = name.rfind('_');
+    while (unit_of_key(name.substr(end)) != unit) end = name.rfind('_', end - 1);
+    name = name.substr(0, end);
+  }
+  std::string label(name);
+  for (char& c : label)
+    if (c == '_' || c == '.') c = ' ';
+  return label;
+}
+
 Json field_json(const KeyDescription& described, const Json& document, const Json& defaults) {
   const std::string& name = described.name;
   const Key& key = described.key;
   const std::size_t dot = name.rfind('.');
   const Json value = value_at(document, name);
   Json field = {{"key", name},
+                {"label", label_of(name)},
                 {"section", dot == std::string::npos ? "" : name.substr(0, dot)},
                 {"unit", unit_of_key(name)},
                 {"doc", key.help},

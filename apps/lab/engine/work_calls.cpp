@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,7 +16,7 @@
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/decode/frame_pipeline.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
@@ -142,18 +144,17 @@ Answer scene_answer(const Request& request, const Progress& progress) {
   options.seed = seed_of(request);
   options.validate();
 
-  const ProgressParts parts(progress, {30.0, filter_options ? 60.0 : 0.0, 10.0});
+  const ProgressParts parts(progress, {30.0, filter_options ? 70.0 : 10.0});
   const StagedScene scene = built_in_scene(name, width, height);
   const StagedCapture captured = capture(scene, code, camera, options, {}, parts[0]);
-  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+  const auto backend = cpu_backend(
+      std::make_unique<Decoder>(make_decoding_table(ForwardModel(code, camera), camera)));
+  std::optional<Filter> filter;
+  if (filter_options) filter.emplace(backend->decoder().table(), *filter_options);
+  const auto pipeline = backend->prepare({.filter = filter ? &*filter : nullptr}, height, width);
+  pipeline->submit(view_of_frame(captured.raw, 0));
   DepthImage decoded(height, width);
-  if (filter_options) {
-    const Filter filter(decoder.table(), *filter_options);
-    const FilteredFrame filtered = filter.apply(captured.raw, 0, parts[1]);
-    decoder.decode(filtered.view(), DecodedView::of(decoded), parts[2]);
-  } else {
-    decoded = decoder.decode(captured.raw, 0, parts[2]);
-  }
+  decode_frame(*pipeline, {}, 0, height, DecodedView::of(decoded), parts[1]);
   const SceneImage& truth = captured.truth.front();
   const SceneError error = scene_error(decoded.depth_m, truth, camera, DepthErrorKind::circular);
 

@@ -115,7 +115,7 @@ export class CodesView {
     });
   }
 
-  // Some cameras support no built-in code, e.g. those with three taps.
+  // A camera with three taps, for example, supports only a few families.
   #offerDesign() {
     const slots = this.lab.slots.slice(0, this.lab.state.codes.length);
     byId('no-code').hidden = !slots.every((slot) => slot.problem);
@@ -156,9 +156,8 @@ export class CodesView {
           id: 'add-code',
           onclick: () => {
             const used = new Set(this.lab.state.codes.map((code) => code.name));
-            const next =
-                this.about.families.find(({name}) => !used.has(name)) ?? this.about.families[0];
-            this.lab.addCode({name: next.name});
+            const {families} = this.about;
+            this.lab.addCode({name: families.find((name) => !used.has(name)) ?? families[0]});
           }
         },
         '+ Code');
@@ -169,7 +168,7 @@ export class CodesView {
     const put = (next) => store.change((state) => {
       state.codes[i] = next;
     });
-    const names = this.about.families.map(({name}) => name);
+    const names = this.about.families;
     const own = code.file !== undefined || !names.includes(code.name);
     const other = element('input', {
       class: 'other',

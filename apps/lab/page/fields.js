@@ -22,13 +22,6 @@ const titleOf = (section) =>
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const steps = 1000;
 
-/** Label of a control: the key without its section and unit. */
-const nameOf = ({key, section, unit}) =>
-    (section ? key.slice(groupOf(section).length + 1) : key)
-        .replace(unit ? /_(e_per_s|m_per_c|hz|s|e|m|px|deg|w|c)$/ : /$^/, '')
-        .replaceAll('_', ' ')
-        .replaceAll('.', ' ');
-
 /** Converts a value of a field to a position of its slider, and back. */
 function sliderScale(field) {
   let [low, high] = field.usual;
@@ -63,7 +56,7 @@ class Field {
           type: 'button',
           class: 'back',
           hidden: true,
-          'aria-label': `Reset ${nameOf(field)}`,
+          'aria-label': `Reset ${field.label}`,
           title: 'Reset',
           onclick: () => panel.reset(this.key)
         },
@@ -72,7 +65,7 @@ class Field {
     const described = `${id}-doc ${id}-problem`;
     this.inputs = this.#inputs(field, id, described);
     const label = field.type === 'boolean' ? element('span', {style: 'flex:1'}) :
-                                             element('label', {'for': id}, nameOf(field));
+                                             element('label', {'for': id}, field.label);
     const name = field.type === 'boolean' ?
         null :
         element(
@@ -93,7 +86,7 @@ class Field {
       });
       return element(
           'div', {class: 'check', title: field.key}, this.input,
-          element('label', {'for': id, style: 'flex:1'}, nameOf(field)));
+          element('label', {'for': id, style: 'flex:1'}, field.label));
     }
     if (field.type === 'choice') {
       this.input = element(
@@ -120,7 +113,7 @@ class Field {
       type: 'range',
       min: 0,
       max: steps,
-      'aria-label': `${nameOf(field)}${field.unit ? ', ' + field.unit : ''}`,
+      'aria-label': `${field.label}${field.unit ? ', ' + field.unit : ''}`,
       oninput: () => this.#slid(),
       onchange: () => this.panel.settle()
     });

@@ -64,8 +64,7 @@ export class SceneView {
         ...list.map((one) => element('option', {value: one}, String(one))));
     this.inputs = {
       name: choice('scene-name', about.scenes, 'name', String),
-      filter:
-          choice('scene-filter', about.filters.filter((word) => word !== 'off'), 'filter', String),
+      filter: choice('scene-filter', about.filters, 'filter', String),
       width: choice('scene-width', widths, 'width', Number),
       signal: element(
           'input',

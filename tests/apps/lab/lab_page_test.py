@@ -326,6 +326,12 @@ class Readers(LabTest):
             self.assertGreater(len(text), 10)
             self.assertNotRegex(text, r"@|//|\bits\b|^its? ")
 
+    def test_labels_do_not_repeat_the_unit(self):
+        labels = self.run_script("return Object.fromEntries(tofsmithLab.lab.camera.fields.map(({key, label, unit}) => [key, [label, unit]]));")
+        self.assertEqual(labels["operating.velocity_m_per_s"], ["velocity", "m/s"])
+        self.assertEqual(labels["temperature.signal_per_c"], ["signal", "1/degree C"])
+        self.assertEqual(labels["light.impulse_response.kind"], ["impulse response kind", ""])
+
     def test_every_control_and_plot_has_a_name(self):
         nameless = self.run_script("""
             return [...document.querySelectorAll('button, input, select, [tabindex="0"], canvas')].filter((node) => !node.closest('[hidden]') &&
