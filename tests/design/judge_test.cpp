@@ -230,6 +230,14 @@ TEST(ContendingFamilies, IncludeTheBestOfAllFamilies) {
   }
 }
 
+TEST(ContendingFamilies, EqualAtlasCodesAreListedOnce) {
+  const CodeSet code = build_family("sinusoid-k4", coarse_camera("paper-10f0"));
+  DesignResult result;
+  add_atlas_codes({{code, code.renamed("equal")}, {}}, result);
+  ASSERT_EQ(result.candidates.size(), 1u);
+  EXPECT_EQ(result.candidates.front().code.name(), "sinusoid-k4");
+}
+
 TEST(ContendingFamilies, ReportWhyOthersCannotCompete) {
   Camera camera = coarse_camera("paper-10f0");
   camera.sensor.taps = 2;
