@@ -92,6 +92,8 @@ function tightRange(axis, values) {
   return low < high && !axis.log ? {...axis, range: [low, high]} : axis;
 }
 
+const axisHeight = 32;  // of the ticks and title below the last row of a grid
+
 function drawLines(block, body) {
   const {columns, rows} = block, isGrid = rows.length > 1 || columns.length > 1;
   const all = rows.map((row) => row.panels.map((panel) => panel.map(seriesSpec)));
@@ -119,11 +121,14 @@ function drawLines(block, body) {
     const plot = new LinePlot(), {x, y} = axes[c], isLast = r === rows.length - 1;
     const title = r === 0 && column.title ?
         [element('p', {class: 'panel-title'}, column.title, y.title && rows.length > 1 ? element('small', {}, y.title) : '')] : [];
-    if (c === 0 && rows.length > 1) grid.append(element('p', {class: 'row-title'}, row.title));
+    if (c === 0 && rows.length > 1)
+      grid.append(element(
+          'p', {class: 'row-title', style: `height:${rowHeight}px;margin-bottom:${isLast ? axisHeight : 0}px`},
+          row.title));
     grid.append(element('div', {class: 'panel'}, ...title, plot.root));
     plot.show({
       label: [block.alt, column.title, row.title].filter(Boolean).join(', '),
-      height: rows.length > 1 ? rowHeight + (isLast ? 32 : 0) : isFront ? 205 : isGrid ? 240 : 290,
+      height: rows.length > 1 ? rowHeight + (isLast ? axisHeight : 0) : isFront ? 205 : isGrid ? 240 : 290,
       x,
       y: rows.length > 1 ? {...y, title: ''} : y,
       series: all[r][c],

@@ -53,6 +53,21 @@ return Array.from(document.querySelectorAll('[data-figure]'), figure => {
 });
 """
 
+# Returns titles that are not next to their row, and tables of prose that scroll.
+PLACED = """
+const middle = node => { const {top, bottom} = node.getBoundingClientRect(); return (top + bottom) / 2; };
+const wrong = [];
+for (const title of document.querySelectorAll('.row-title')) {
+  const text = document.createRange();
+  text.selectNodeContents(title);
+  const off = middle(text) - middle(title.nextElementSibling.querySelector('svg .frame'));
+  if (Math.abs(off) > 2) wrong.push(`the title '${title.textContent}' is ${off} px off its row`);
+}
+for (const table of document.querySelectorAll('.table:not(:has(.number))'))
+  if (table.scrollHeight > table.clientHeight + 1) wrong.push(`a table scrolls: ${table.textContent.slice(0, 80)}`);
+return wrong;
+"""
+
 # Moves every slider and returns the figures whose pictures do not change.
 SLIDE = """
 const stuck = [];
@@ -167,6 +182,7 @@ def problems_of(driver, page):
     problems += [f"the slider of figure {figure} moves nothing" for figure in stuck]
     problems += [f"a choice of figure {figure} changes nothing" for figure in chosen]
     problems += wrong
+    problems += driver.execute_script(PLACED)
     if driver.execute_script("return document.querySelectorAll('details.section:not([open])').length"):
         problems.append("a section is still folded")
     if status["rendered"] != status["total"]:
