@@ -127,10 +127,12 @@ function pathOf(series, x, y) {
   return path;
 }
 
+// Markers of dashed series are rings, through which coinciding markers are visible.
+const markStyle = ({colour, dash}) => `stroke:${colour};fill:${dash ? 'none' : colour}`;
+
 /** Returns the markers of a series with error bars. */
 function marksOf(series, x, y) {
-  const marks = [];
-  const style = `stroke:${series.colour};fill:${series.colour}`;
+  const marks = [], style = markStyle(series);
   for (let i = 0; i < series.x.length; ++i) {
     if (!isShown(series.y[i], y) || !isShown(series.x[i], x)) continue;
     const at = x.at(series.x[i]), error = series.error?.[i];
@@ -156,7 +158,8 @@ function bandOf({x: places, band: [low, high]}, x, y) {
   return `M${there.concat(back).join('L')}Z`;
 }
 
-function sampleOf({colour, dash, mark, width = 1.8}) {
+function sampleOf(series) {
+  const {colour, dash, mark, width = 1.8} = series;
   const line = drawn('line', {
     x1: 0,
     x2: 24,
@@ -166,7 +169,7 @@ function sampleOf({colour, dash, mark, width = 1.8}) {
     'stroke-dasharray': dash || null,
     style: `stroke:${colour}`
   });
-  const dot = drawn('circle', {cx: 12, cy: 5, r: 3.2, style: `fill:${colour}`});
+  const dot = drawn('circle', {cx: 12, cy: 5, r: 3.2, style: markStyle(series)});
   return drawn(
       'svg', {viewBox: '0 0 24 10', 'aria-hidden': 'true'}, mark === 'markers' ? null : line,
       /markers/.test(mark) ? dot : null);
@@ -255,7 +258,9 @@ export class LinePlot {
       if (one.band)
         inside.append(drawn(
             'path', {d: bandOf(one, this.x, this.y), style: `fill:${one.colour}`, opacity: 0.18}));
-    for (const one of spec.series) {
+    // Dashed lines are above solid ones, which remain visible in the gaps.
+    const isDashed = ({dash}) => Number(Boolean(dash));
+    for (const one of [...spec.series].sort((a, b) => isDashed(a) - isDashed(b))) {
       if (one.mark !== 'markers')
         inside.append(drawn('path', {
           class: 'curve',

@@ -46,10 +46,8 @@ ImageReference error_reference(const SceneImage& truth, const Camera& camera, do
 
 ColouredPoints cloud_of(const PinholeView& view, std::string title, const Image<float>& depth_m);
 
-/// Formats as 100, 3.16k, 100k, 17M.
+/// Formats as 100, 3.16e+03, 1e+07, like the texts of a design.
 inline std::string level_text(double electrons_per_s) {
-  if (electrons_per_s >= 1e6) return fmt::format("{:.3g}M", electrons_per_s / 1e6);
-  if (electrons_per_s >= 1e3) return fmt::format("{:.3g}k", electrons_per_s / 1e3);
   return fmt::format("{:.3g}", electrons_per_s);
 }
 

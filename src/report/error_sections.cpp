@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -185,11 +186,15 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
     }
     return line;
   };
+  // Codes with similar errors follow one another: dashes show curves that coincide.
+  static constexpr std::array dashes = {Dash::solid, Dash::dash, Dash::dot};
   ColourAssignment colours;
   std::vector<Series> series;
   for (const DepthErrorRow& code : codes) {
     const DepthErrorReport& e = *code.error;
-    series.push_back(series_of(e, e.code, colours.style(e.code),
+    LineStyle style = colours.style(e.code);
+    style.dash = dashes[series.size() % dashes.size()];
+    series.push_back(series_of(e, e.code, style,
                                [](const PointDepthError& p) { return p.circular_mde_m.value; }));
     series.back().mark = Mark::line_and_markers;
     for (const PointDepthError& p : e.points)
@@ -197,16 +202,15 @@ Figure error_by_signal(const std::string& id, const Camera& camera,
         series.back().y_error.push_back(1e3 * p.circular_mde_m.standard_error);
   }
   const DepthErrorReport& first = *codes.front().error;
-  const auto add_bound = [&](std::string name, Dash dash, double PointDepthError::*bound) {
-    LineStyle style = reference_style();
-    style.dash = dash;
-    Series line = series_of(first, std::move(name), style,
+  const auto add_bound = [&](std::string name, Dash dash, double width_px, Bound bound) {
+    Series line = series_of(first, std::move(name), {reference_style().colour, dash, width_px},
                             [&](const PointDepthError& p) { return p.*bound; });
     if (line.y.front() > 0.0) series.push_back(std::move(line));
   };
-  add_bound("Cramér-Rao bound", Dash::dot, &PointDepthError::cramer_rao_mae_m);
-  add_bound("receiver bound", Dash::dash_dot, &PointDepthError::receiver_bound_mae_m);
-  add_bound("direct ToF bound", Dash::dash, &PointDepthError::direct_tof_bound_mae_m);
+  // Wide, to be visible on the curve of a code that reaches the bound.
+  add_bound("Cramér-Rao bound", Dash::dot, 4.0, &PointDepthError::cramer_rao_mae_m);
+  add_bound("receiver bound", Dash::dash_dot, 1.5, &PointDepthError::receiver_bound_mae_m);
+  add_bound("direct ToF bound", Dash::dash, 1.5, &PointDepthError::direct_tof_bound_mae_m);
   return line_figure(
       {.id = id,
        .title = "Circular depth error over signal",

@@ -117,8 +117,12 @@ TEST(DesignReport, ShowsEachCurveOnceAndOmitsShortOnes) {
     const auto json = nlohmann::json::parse(figure->json());
     if (figure->kind() == "lines" &&
         json["columns"][0]["y"]["label"].get<std::string>().ends_with("depth error") &&
-        json["columns"][0]["x"]["label"] == "signal")
+        json["columns"][0]["x"]["label"] == "signal") {
       ++error_curves;
+      const auto& series = json["rows"][0]["panels"][0];
+      for (std::size_t i = 1; i < series.size() && series[i]["mark"] != "line"; ++i)
+        EXPECT_NE(series[i]["dash"], series[i - 1]["dash"]) << "both are visible if they coincide";
+    }
     if (!id.starts_with("convergence-")) continue;
     std::size_t longest = 0;
     for (const auto& series : json["rows"][0]["panels"][0])
