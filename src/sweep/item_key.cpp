@@ -12,6 +12,7 @@
 #include <map>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "camera/shared/depth_prior.hpp"
@@ -165,11 +166,32 @@ void append(std::string& text, const Waveform& waveform) {
   text += '\n';
 }
 
-/// Omits name and light levels; responses become samples regardless of their source.
+/// Resets the keys of [operating] that other parts of item_key() contain; keeps all others, such as
+/// new ones.
+OperatingRange other_keys(OperatingRange range) {
+  OperatingRange usual = paper_operating_range();
+  // item_key() itself
+  range.signal_e_per_s = std::move(usual.signal_e_per_s);
+  range.ambient_e_per_s = std::move(usual.ambient_e_per_s);
+  range.error = usual.error;
+  range.albedo = usual.albedo;
+  range.uniform_albedo = usual.uniform_albedo;
+  range.neighbours = usual.neighbours;
+  range.working_distance_m.reset();
+  range.depths.reset();
+  // setup_key() of designs, because evaluate() ignores them
+  range.statistic = usual.statistic;
+  range.multipath.reset();
+  range.interference.reset();
+  range.velocity_m_per_s.reset();
+  return range;
+}
+
+/// Omits the name; responses become samples regardless of their source.
 std::string camera_text(const Camera& camera) {
   Camera plain = camera;
   plain.name = "camera";
-  plain.operating = paper_operating_range();
+  plain.operating = other_keys(std::move(plain.operating));
   for (ImpulseResponse* response : {&plain.light.impulse_response, &plain.sensor.impulse_response})
     if (!response->samples.empty()) response->file.clear();
   return camera_to_json(plain);
@@ -220,18 +242,21 @@ std::string setup_key(const Camera& camera, const DesignOptions& options, double
   fmt::format_to(std::back_inserter(text), "designed by {} with effort {}: {} exposures {}\n",
                  TOFSMITH_VERSION, effort, name_of(options.method),
                  fmt::join(options.exposures, ","));
-  // Irrelevant to evaluate(), but not to design().
-  if (const auto& later = camera.operating.multipath) {
-    append(text, "ratio ", later->ratio);
-    append(text, "delay ", later->delay_m);
-    append(text, "weight ", {&later->weight, 1});
+  // Irrelevant to evaluate(), but not to design(). The bindings do not compile if a member is
+  // missing.
+  if (camera.operating.multipath) {
+    const auto& [ratio, delay_m, weight] = *camera.operating.multipath;
+    append(text, "ratio ", ratio);
+    append(text, "delay ", delay_m);
+    append(text, "weight ", {&weight, 1});
   }
-  if (const auto& others = camera.operating.interference) {
-    const double numbers[] = {static_cast<double>(others->cameras), others->signal_ratio,
-                              others->frequency_offset_hz, static_cast<double>(others->parts)};
+  if (camera.operating.interference) {
+    const auto& [cameras, signal_ratio, code, offset_hz, spreading, parts] =
+        *camera.operating.interference;
+    const double numbers[] = {static_cast<double>(cameras), signal_ratio, offset_hz,
+                              static_cast<double>(parts)};
     append(text, "interference ", numbers);
-    fmt::format_to(std::back_inserter(text), "{} {}\n", others->code,
-                   static_cast<int>(others->spreading));
+    fmt::format_to(std::back_inserter(text), "{} {}\n", code, static_cast<int>(spreading));
   }
   if (const auto& velocity = camera.operating.velocity_m_per_s)
     append(text, "velocity ", {&*velocity, 1});

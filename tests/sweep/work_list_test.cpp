@@ -6,10 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "sweep_setup.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
 
 namespace tofsmith {
@@ -66,12 +68,8 @@ TEST(WorkList, TheKeyOfADesignedCodeDependsOnAllDesignSettings) {
       "code = \"optimized-k4\"\n",
       "code = \"optimized-k3\"\neffort = 0.1\n",
       "code = \"optimized-k3\"\n" + axis("seed", "2"),
-      "code = \"optimized-k3\"\n" + axis("operating.error", "\"circular\""),
       "code = \"optimized-k3\"\n" + axis("operating.multipath", "{ratio = [0.1, 0.2]}"),
       "code = \"optimized-k3\"\n" + axis("operating.interference", "{cameras = 2}"),
-      "code = \"optimized-k3\"\n" + axis("operating.interference", "{code = \"square-k4\"}"),
-      "code = \"optimized-k3\"\n" + axis("operating.velocity_m_per_s", "1"),
-      "code = \"optimized-k3\"\n" + axis("operating.statistic", "\"rmse\""),
       "code = \"optimized-k3\"\n" + axis("sensor.taps", "2")};
   std::set<std::string> keys;
   for (const std::string& text : texts) {
@@ -83,6 +81,43 @@ TEST(WorkList, TheKeyOfADesignedCodeDependsOnAllDesignSettings) {
     keys.insert(item.key);
   }
   EXPECT_EQ(keys.size(), texts.size());
+}
+
+TEST(WorkList, TheKeyOfADesignedCodeDependsOnEveryKeyOfTheOperatingTable) {
+  const std::map<std::string, std::string> other_values = {
+      {"operating.signal_e_per_s", "[1e3]"},
+      {"operating.ambient_e_per_s", "[1e3]"},
+      {"operating.error", "\"circular\""},
+      {"operating.statistic", "\"rmse\""},
+      {"operating.albedo", "0.5"},
+      {"operating.neighbours", "9"},
+      {"operating.working_distance_m", "[1, 3]"},
+      {"operating.depths", "[0, 1, 2]"},
+      {"operating.velocity_m_per_s", "1"},
+      {"operating.multipath.ratio", "[0.1, 0.2]"},
+      {"operating.multipath.delay_m", "[0.1, 0.2]"},
+      {"operating.multipath.weight", "0.3"},
+      {"operating.interference.cameras", "2"},
+      {"operating.interference.signal_ratio", "0.2"},
+      {"operating.interference.code", "\"square-k4\""},
+      {"operating.interference.frequency_offset_hz", "1e4"},
+      {"operating.interference.spreading", "\"signs\""},
+      {"operating.interference.parts", "8"}};
+  const std::string designed =
+      "camera = \"paper-10f0\"\ncode = \"optimized-k3\"\ntrials = 1000\nset = [\"samples=24\", "
+      "\"operating.multipath.weight=0.2\", \"operating.interference.spreading=phases\"]\n";
+  std::set<std::string> keys = {WorkList(parse_sweep_toml(designed)).item(0).key};
+  std::size_t declared = 0;
+  for (const KeyDescription& key : describe_camera_keys(load_camera("paper-10f0"))) {
+    if (!key.name.starts_with("operating.") || key.type == ValueType::table) continue;
+    ++declared;
+    ASSERT_TRUE(other_values.contains(key.name)) << key.name << " needs a value in this test";
+    keys.insert(WorkList(parse_sweep_toml(designed + axis(key.name, other_values.at(key.name))))
+                    .item(0)
+                    .key);
+    EXPECT_EQ(keys.size(), declared + 1) << key.name;
+  }
+  EXPECT_EQ(declared, other_values.size());
 }
 
 TEST(WorkList, AKeyIgnoresSettingsWithoutEffect) {
