@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
@@ -31,6 +33,36 @@ std::vector<std::vector<AxisBlock>> axis_blocks(const SweepSpec& spec);
 
 /// Returns "axis samples" or "group optics", for errors.
 std::string name_of(const SweepSpec& spec, const AxisBlock& block);
+
+/// Values that axes set, besides keys of the camera.
+struct ItemValues {
+  std::string camera, code;
+  int exposures = 0;  ///< replaces {exposures} in the code
+  EvaluateOptions options = {};
+  /// NaN: the levels of the camera.
+  OperatingPoint light = {std::numeric_limits<double>::quiet_NaN(),
+                          std::numeric_limits<double>::quiet_NaN()};
+};
+auto fields_of(ConstOrNot<ItemValues> auto& v) {
+  return std::tuple(Field("camera", v.camera), Field("code", v.code),
+                    Field("exposures", v.exposures, at_least(1)),
+                    Field("options", v.options, FieldMark::in_place),
+                    Field("light", v.light, FieldMark::in_place));
+}
+
+/// Returns true if an axis with this key sets a field of the struct.
+template <typename Struct>
+bool is_field_of(std::string_view key) {
+  Struct any;
+  bool found = false;
+  for_each_field(any, [&](const auto& field) { found = found || key == field.name; });
+  return found;
+}
+
+/// Sets the field with the key of an axis.
+/// @return false for the key of a camera
+/// @throws IoError at a value of another type or out of range
+bool set_value(ItemValues& item, std::string_view key, const SettingValue& value);
 
 /// Returns the first positions of all distinct keys, sorted by key as in the store.
 std::vector<std::int64_t> key_order(std::span<const std::string> keys);

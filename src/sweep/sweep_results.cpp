@@ -52,7 +52,7 @@ std::vector<std::size_t> reported_axes(const SweepSpec& spec) {
   std::vector<std::size_t> axes;
   for (std::size_t a = 0; a < spec.axes.size(); ++a) {
     const std::string& key = spec.axes[a].key;
-    if (key != "code" && key != "signal_e_per_s" && key != "ambient_e_per_s") axes.push_back(a);
+    if (key != "code" && !is_field_of<OperatingPoint>(key)) axes.push_back(a);
   }
   return axes;
 }

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
@@ -12,6 +13,7 @@
 #include "io/text/shared/text_lines.hpp"
 #include "sweep/item_key.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/number_table.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
@@ -32,13 +34,24 @@ SettingValue toml_value_of_line(const std::string& line, std::string place) {
 
 constexpr std::int64_t max_axis_values = 1'000'000;
 
-/// Axis keys that are not keys of the camera.
-constexpr std::array<std::string_view, 9> other_keys = {
-    "camera", "code", "exposures",      "method",         "unwrap_weights",
-    "trials", "seed", "signal_e_per_s", "ambient_e_per_s"};
+/// Returns the names of all fields, including those of structs.
+template <typename Struct>
+std::vector<std::string> field_names() {
+  std::vector<std::string> names;
+  Struct any;
+  for_each_field(any, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (HasFields<Value>)
+      std::ranges::move(field_names<Value>(), std::back_inserter(names));
+    else
+      names.emplace_back(field.name);
+  });
+  return names;
+}
 
 /// @param field  member that contains the key
 void check_key(const TableReader& table, const char* field, const std::string& key) {
+  const std::vector<std::string> other_keys = field_names<ItemValues>();
   std::vector<std::string> known = camera_keys();
   known.insert(known.end(), other_keys.begin(), other_keys.end());
   if (std::ranges::find(known, key) != known.end()) return;
@@ -148,38 +161,12 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
   return values;
 }
 
-[[noreturn]] void refuse_value(const SweepAxis& axis, const SettingValue& value,
-                               std::string_view expected) {
-  throw IoError(value.place,
-                fmt::format("{}: found {}; expected {}", axis.key, value.toml, expected));
-}
-
 void check_value(const SweepAxis& axis, const SettingValue& value) {
-  const bool is_text = value.toml.starts_with('"');
-  const auto is_integer_from = [&](double min) {
-    return value.number && *value.number >= min && *value.number < 0x1p53 &&
-           *value.number == std::floor(*value.number);
-  };
-  if (axis.key == "camera" || axis.key == "code") {
-    if (!is_text || value.text.empty()) refuse_value(axis, value, "a name or file in quotes");
-  } else if (axis.key == "method" || axis.key == "unwrap_weights") {
-    try {
-      if (axis.key == "method")
-        parse_decode_method(value.text);
-      else
-        parse_unwrap_weights(value.text);
-    } catch (const std::invalid_argument& error) {
-      throw IoError(value.place, error.what());
-    }
-  } else if (axis.key == "exposures") {
-    if (!is_integer_from(1)) refuse_value(axis, value, "an integer >= 1");
-  } else if (axis.key == "seed") {
-    if (!is_integer_from(0)) refuse_value(axis, value, "an integer >= 0 below 2^53");
-  } else if (axis.key == "trials") {
-    if (!is_integer_from(2) || *value.number > 4e9) refuse_value(axis, value, "an integer >= 2");
-  } else if (axis.key == "signal_e_per_s" || axis.key == "ambient_e_per_s") {
-    if (!value.number || !(*value.number >= 0.0)) refuse_value(axis, value, "a number >= 0");
-  }
+  ItemValues any;
+  set_value(any, axis.key, value);
+  if (any.options.seed >= std::uint64_t{1} << 53)  // exports contain doubles
+    throw IoError(value.place, fmt::format("{}: found {}; expected an integer >= 0 below 2^53",
+                                           axis.key, value.toml));
 }
 
 std::vector<std::string> read_axis_keys(TableReader& table) {
@@ -265,30 +252,75 @@ std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
   return axes;
 }
 
-void read_options(TableReader& table, EvaluateOptions& options) {
-  for_each_field(options, [&](const auto& field) {
-    using Value = std::remove_cvref_t<decltype(field.value)>;
-    if constexpr (HasWords<Value>) {
-      table.choice(field.name, field.value);
-    } else if constexpr (std::is_same_v<Value, std::int64_t>) {
-      auto count = static_cast<std::uint64_t>(field.value);
-      table.value(field.name, count);
-      field.value = static_cast<std::int64_t>(count);
-    } else {
-      table.value(field.name, field.value);
-    }
-  });
-  try {
-    options.validate();
-  } catch (const InvalidArgument& error) {
-    table.fail(error.field(), error.what());
+/// @param unit  of a number in quotes that has a unit
+template <typename Number>
+std::optional<Number> number_of(const SettingValue& value, std::string_view unit) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    const bool has_unit = !value.number && !number_in(value.text);
+    return has_unit ? number_in_unit(value.text, unit) : value.number;
+  } else {
+    Number integer = 0;  // seeds can be larger than 2^53
+    const char* const end = value.toml.data() + value.toml.size();
+    const auto [stopped, error] = std::from_chars(value.toml.data(), end, integer);
+    if (error == std::errc() && stopped == end) return integer;
+    const double number = value.number.value_or(0.5);
+    if (number != std::floor(number) || std::abs(number) >= 0x1p53 ||
+        !std::in_range<Number>(static_cast<std::int64_t>(number)))
+      return std::nullopt;
+    return static_cast<Number>(number);
   }
 }
 
-void read_effort(TableReader& table, double& effort) {
-  table.value("effort", effort);
-  if (!(effort >= 0.01 && effort <= 100.0))
-    table.fail("effort", fmt::format("found {}; expected a number in [0.01, 100]", effort));
+template <typename Value>
+void set_field(const Field<Value>& field, const SettingValue& value) {
+  const auto refuse = [&](const std::string& expected) {
+    throw IoError(value.place,
+                  fmt::format("{}: found {}; expected {}", field.name, value.toml, expected));
+  };
+  if constexpr (HasWords<Value>) {
+    static constexpr auto words = words_of(Value{});
+    const auto word = std::ranges::find(words, value.text);
+    if (word == words.end()) {
+      const std::string near = nearest_word(value.text, words);
+      refuse(fmt::format("one of \"{}\"{}", fmt::join(words, "\", \""),
+                         near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
+    }
+    field.value = static_cast<Value>(word - words.begin());
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    if (value.toml != "true" && value.toml != "false") refuse("true or false");
+    field.value = value.toml == "true";
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    if (!value.toml.starts_with('"') || value.text.empty()) refuse("a name or file in quotes");
+    field.value = value.text;
+  } else {
+    const std::optional<Value> number = number_of<Value>(value, field.unit());
+    if (!number || !field.range.contains(static_cast<double>(*number)))
+      refuse(fmt::format("{} {}", std::is_integral_v<Value> ? "an integer" : "a finite number",
+                         field.range.is_restricted ? field.range.text(true) : ">= 0"));
+    field.value = *number;
+  }
+}
+
+template <typename Struct>
+bool set_field_of(Struct& its, std::string_view key, const SettingValue& value) {
+  bool is_set = false;
+  for_each_field(its, [&](const auto& field) {
+    if constexpr (HasFields<std::remove_cvref_t<decltype(field.value)>>) {
+      is_set = set_field_of(field.value, key, value) || is_set;
+    } else if (key == field.name) {
+      set_field(field, value);
+      is_set = true;
+    }
+  });
+  return is_set;
+}
+
+/// Reads a key at the top level.
+template <typename Value>
+void read_field(const TomlDocument& document, TableReader& table, const Field<Value>& field) {
+  if (!table.contains(field.name)) return;
+  const toml::node& node = *document.root().get(field.name);
+  set_field(field, toml_value_of(node, document.place_of(node.source())));
 }
 
 /// Reads `codes = [...]`, an axis that is combined with every other axis.
@@ -379,6 +411,10 @@ void check(const SweepSpec& spec) {
 
 }  // namespace
 
+bool set_value(ItemValues& item, std::string_view key, const SettingValue& value) {
+  return set_field_of(item, key, value);
+}
+
 SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) {
   const TomlDocument document(text, source_name);
   SweepSpec spec;
@@ -389,8 +425,8 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) 
   table.value("camera", spec.camera);
   table.value("set", spec.settings);
   table.choice("combine", spec.combine);
-  read_options(table, spec.options);
-  read_effort(table, spec.effort);
+  for_each_field(spec.options, [&](const auto& field) { read_field(document, table, field); });
+  read_field(document, table, Field("effort", spec.effort, closed(0.01, 100)));
   read_codes(table, spec);
   table.tables("axis", [&](TableReader& inner) {
     for (SweepAxis& axis : read_sweep_axes(inner)) spec.axes.push_back(std::move(axis));

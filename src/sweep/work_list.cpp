@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -27,15 +25,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Fixed settings with the values of the axes.
-struct Choice {
-  std::string camera;
+/// Fixed values and settings with those of the axes.
+struct Choice : ItemValues {
   std::vector<std::string> settings;
-  std::string code;
-  EvaluateOptions options;
-  /// NaN: use the camera's value.
-  double signal_e_per_s = std::numeric_limits<double>::quiet_NaN();
-  double ambient_e_per_s = std::numeric_limits<double>::quiet_NaN();
 };
 
 std::string replaced(std::string text, std::string_view what, const std::string& by) {
@@ -45,33 +37,18 @@ std::string replaced(std::string text, std::string_view what, const std::string&
 }
 
 Choice choose(const SweepSpec& spec, std::int64_t item) {
-  Choice choice{spec.camera, spec.settings, spec.code, spec.options};
+  Choice choice{{.camera = spec.camera, .code = spec.code, .options = spec.options}, spec.settings};
   const std::vector<std::size_t> indices = spec.value_indices(item);
-  std::string exposures;
   for (std::size_t a = 0; a < spec.axes.size(); ++a) {
     const std::string& key = spec.axes[a].key;
     const SettingValue& value = spec.axes[a].values[indices[a]];
-    if (key == "camera")
-      choice.camera = value.text;
-    else if (key == "code")
-      choice.code = value.text;
-    else if (key == "exposures")
-      exposures = value.text;
-    else if (key == "method")
-      choice.options.method = parse_decode_method(value.text);
-    else if (key == "unwrap_weights")
-      choice.options.unwrap_weights = parse_unwrap_weights(value.text);
-    else if (key == "seed")
-      choice.options.seed = static_cast<std::uint64_t>(*value.number);
-    else if (key == "trials")
-      choice.options.trials = static_cast<std::int64_t>(*value.number);
-    else if (key == "signal_e_per_s" || key == "ambient_e_per_s") {
-      choice.settings.push_back(fmt::format("operating.{}=[{}]", key, value.toml));
-      (key == "signal_e_per_s" ? choice.signal_e_per_s : choice.ambient_e_per_s) = *value.number;
-    } else
+    if (!set_value(choice, key, value))
       choice.settings.push_back(fmt::format("{}={}", key, value.toml));
+    else if (is_field_of<OperatingPoint>(key))
+      choice.settings.push_back(fmt::format("operating.{}=[{}]", key, value.toml));
   }
-  choice.code = replaced(std::move(choice.code), "{exposures}", exposures);
+  choice.code =
+      replaced(std::move(choice.code), "{exposures}", fmt::format("{}", choice.exposures));
   return choice;
 }
 
@@ -148,7 +125,8 @@ class SetupCache {
       const std::string& key = list.spec().axes[a].key;
       // With two axes for the light levels, the last one takes effect.
       if (key.starts_with("operating")) sets_light_twice_ = true;
-      if (std::ranges::find(light_keys, key) == light_keys.end()) setup_axes_.push_back(a);
+      if (!is_field_of<EvaluateOptions>(key) && !is_field_of<OperatingPoint>(key))
+        setup_axes_.push_back(a);
     }
   }
 
@@ -156,13 +134,15 @@ class SetupCache {
   std::string key(std::int64_t item) {
     const SweepSpec& spec = list_.spec();
     const Choice choice = choose(spec, item);
-    const bool is_plain =
-        !sets_light_twice_ && !(choice.signal_e_per_s <= 0.0) && !designed_exposures(choice.code);
+    const bool is_plain = !sets_light_twice_ && !(choice.light.signal_e_per_s <= 0.0) &&
+                          !designed_exposures(choice.code);
     const std::optional<Setup> setup = is_plain ? setup_of(item) : std::nullopt;
     if (!setup) return list_.item(item).key;
     OperatingRange light = setup->light;
-    if (!std::isnan(choice.signal_e_per_s)) light.signal_e_per_s = {choice.signal_e_per_s};
-    if (!std::isnan(choice.ambient_e_per_s)) light.ambient_e_per_s = {choice.ambient_e_per_s};
+    if (!std::isnan(choice.light.signal_e_per_s))
+      light.signal_e_per_s = {choice.light.signal_e_per_s};
+    if (!std::isnan(choice.light.ambient_e_per_s))
+      light.ambient_e_per_s = {choice.light.ambient_e_per_s};
     return item_key(setup->key, light, choice.options);
   }
 
@@ -172,8 +152,6 @@ class SetupCache {
     OperatingRange light;
   };
   static constexpr std::size_t max_kept = 100'000;
-  static constexpr std::array<std::string_view, 6> light_keys = {
-      "signal_e_per_s", "ambient_e_per_s", "seed", "trials", "method", "unwrap_weights"};
 
   /// Returns none if the cache is full; the setup is then built for each item.
   std::optional<Setup> setup_of(std::int64_t item) {

@@ -126,6 +126,7 @@ TEST(WorkList, AKeyIgnoresSettingsWithoutEffect) {
   EXPECT_EQ(key_of(""), key_of("max_trials = 1000\n"));  // only used with a target
   EXPECT_EQ(key_of(""), key_of(axis("unwrap_weights", "\"frequency\"")));
   EXPECT_EQ(key_of(""), key_of(axis("operating.depths", "[2, 2]")));  // uniform depths
+  EXPECT_EQ(key_of(axis("outlier_threshold_m", "0.25")), key_of("outlier_threshold_m = 0.25\n"));
   EXPECT_EQ(key_of(axis("signal_e_per_s", "5e3")), key_of(axis("signal_e_per_s", "5000, 1")));
 }
 
@@ -172,6 +173,7 @@ TEST(WorkList, KeysOfTheListEqualThoseOfItsItems) {
        {codes + axis("seed", "1, 2") + axis("light.peak_factor", "12, 15") +
             axis("signal_e_per_s", "1e3, 2.1e4") + axis("ambient_e_per_s", "0, 0.3"),
         codes + axis("method", "\"zncc\", \"ml\"") + axis("trials", "2, 4"),
+        codes + axis("sub_bin", "true, false") + axis("outlier_threshold_m", "0.25, \"20 cm\""),
         codes + axis("operating.signal_e_per_s", "[1e3], [2e3]") + axis("signal_e_per_s", "5e3"),
         codes + axis("signal_e_per_s", "5e3, 6e3") + axis("operating.signal_e_per_s", "[1e3]"),
         "combine = \"zip\"\n" + codes + axis("samples", "24, 48") + axis("seed", "7, 8")}) {
@@ -214,7 +216,7 @@ TEST(WorkList, RejectsImpossibleItemsWithTheOffendingValue) {
   refuse("code = \"optimized-k4\"\ntrials = 10\n", "s.toml: ", "must be in [1000, 100000000]");
   refuse("code = \"optimized-k4\"\nmethod = \"ml\"\n", "s.toml: ", "zncc to design codes");
   refuse("code = \"optimized-k0\"\n", "s.toml: ", "must be in [1, 16]");
-  refuse(code + "effort = 0\n", "s.toml:2:10", "expected a number in [0.01, 100]");
+  refuse(code + "effort = 0\n", "s.toml:2:10", "expected a finite number in [0.01, 100]");
   refuse("camera = \"paper\"\n" + code, "s.toml: ", "no built-in camera");
   refuse(code + "set = [\"samles=24\"]\n", "s.toml: setting 'samles=24'", "did you mean samples?");
 }

@@ -26,8 +26,8 @@ namespace tofsmith {
 
 /// A parameter that varies.
 struct SweepAxis {
-  /// A key of the camera such as "light.peak_factor", or camera, code, exposures, method,
-  /// signal_e_per_s, ambient_e_per_s, seed or trials.
+  /// A key of the camera such as "light.peak_factor", a field of EvaluateOptions or OperatingPoint,
+  /// or camera, code or exposures.
   std::string key;
   std::vector<SettingValue> values;
   std::string place;       ///< for errors
