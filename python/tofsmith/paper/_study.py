@@ -77,8 +77,9 @@ class Study:
         self.findings.append(Finding(holds, statement, measured, "" if holds == HOLDS else why))
 
     def picture(self, name: str, figure: "Figure", caption: str) -> None:
-        """Writes NAME.png and NAME.pdf."""
+        """Writes NAME.png and NAME.pdf with the same layout."""
         figure.savefig(self.directory / f"{name}.png", dpi=200)
+        figure.set_layout_engine("none")  # computing the layout again takes longer than drawing
         figure.savefig(self.directory / f"{name}.pdf", dpi=200, metadata={"CreationDate": None})
         self.pictures.append((name, caption))
 

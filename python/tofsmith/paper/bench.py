@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Repeated measurements, for Figs. 7 and 9 to 11."""
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 import tofsmith
-from tofsmith import Camera, CodeSet, Scene
+from tofsmith import Camera, CodeSet, Decoder, Scene
 
 from ._study import Study
 from .cameras import SCAN_POWER_MW, Light
@@ -23,12 +24,17 @@ def scanning_codes(study: Study) -> tuple[Camera, list[CodeSet]]:
     return camera, study.codes(camera, (4, 5), BASELINES)
 
 
+@lru_cache(maxsize=64)
+def decoder_of(code: CodeSet, camera: Camera) -> Decoder:
+    return Decoder(code, camera)
+
+
 def decoded_depths(scene: Scene, code: CodeSet, camera: Camera, light: Light, **options: Any) -> Any:
     """Captures a scene with options of capture() and decodes every frame: radial depth [m],
     (F, H, W). Uses all estimates, regardless of their status."""
     raw = tofsmith.capture(scene, code, camera, signal_e_per_s=light.signal_e_per_s,
                            ambient_e_per_s=light.ambient_e_per_s, **options)
-    return tofsmith.Decoder(code, camera).decode(raw, planes=["depth_m"]).depth_m
+    return decoder_of(code, camera).decode(raw, planes=["depth_m"]).depth_m
 
 
 def emulate_range(
