@@ -180,7 +180,8 @@ def test_interference_is_evaluated_and_ranked():
     assert report.rms_m > 0 and report.circular_rmse_m.shape == report.wrong_ok.shape == (2,)
     assert report.circular_rmse_m[1] == pytest.approx(report.expected_rmse_m[1], rel=0.1)
     assert report.shares.wrong == pytest.approx(report.wrong.mean())
-    winner = ts.design(camera, effort=0, trials=1000, atlas_cameras=0).winner
+    winner = ts.design(camera, effort=0, trials=1000, atlas_cameras=0,
+                       baselines=["sinusoid-k4", "hamiltonian-k4"]).winner
     assert winner.ranking_error_m == winner.interference.linear.geometric_mean_m
     with pytest.raises(ValueError, match="operating.interference = none; must be given"):
         ts.interference_error("sinusoid-k4", "paper-10f0")
