@@ -28,7 +28,7 @@ if(EXISTS ${work}/core/consumer)
 endif()
 if("design" IN_LIST components)
   run(${configure} -B ${work}/consumer -D "components=core\;design")
-  run(${CMAKE_COMMAND} --build ${work}/consumer)
+  run(${CMAKE_COMMAND} --build ${work}/consumer --target consumer)
   run(${work}/consumer/consumer)
 endif()
 run(${configure} -B ${work}/all)  # all installed components
