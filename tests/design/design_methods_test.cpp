@@ -316,16 +316,18 @@ void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
 }
 
 TEST(RandomCameras, GiveACodeOrAReasonWithoutEffort) {
+  constexpr std::uint64_t slowest = 840;  // takes longer than all others together
   const std::uint64_t cameras = all_are_tried() ? 1000 : repetitions(25u);
   const std::uint64_t step = all_are_tried() ? 1 : 40;
-  for (std::uint64_t i = 0; i < cameras; ++i) expect_a_code_or_a_reason(step * i, 0.0);
+  for (std::uint64_t i = 0; i < cameras; ++i)
+    if (all_are_tried() || step * i != slowest) expect_a_code_or_a_reason(step * i, 0.0);
 }
 
 TEST(RandomCameras, GiveACodeOrAReasonForEveryMethod) {
-  const std::uint64_t cameras = all_are_tried() ? 50 : repetitions(2u);
-  const std::uint64_t first = 1000, step = all_are_tried() ? 1 : 12;
-  const double effort = all_are_tried() ? 1.0 : 0.01;
-  for (std::uint64_t i = 0; i < cameras; ++i) expect_a_code_or_a_reason(first + step * i, effort);
+  if (all_are_tried())
+    for (std::uint64_t i = 1000; i < 1050; ++i) expect_a_code_or_a_reason(i, 1.0);
+  else  // naive and factorized codes of one and two taps, the search of rows and of four taps
+    for (const std::uint64_t i : {1009, 1016, 1020, 1041}) expect_a_code_or_a_reason(i, 0.01);
 }
 
 }  // namespace

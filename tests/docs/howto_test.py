@@ -24,7 +24,10 @@ from bench_records import CAMERA, BenchRecordsTest  # noqa: E402
 from command_line import TOOL  # noqa: E402
 from sweep_text import sweep_text  # noqa: E402
 
-SHORTER = {" design ": " design --effort 0.01 --trials 1000 ",
+SHORTER = {" design mine.toml ": " design mine.toml --exposures 3 ",
+           " --exposures 3 --method factorize ": " --method factorize ",  # the target determines them
+           " --method search": " --method search --exposures 1",
+           " design ": " design --effort 0.01 --trials 1000 ",
            " --vary bandwidth ": " --vary bandwidth --trials 1000 --max-factor 2 ",
            " reproduce all ": " reproduce fig5 --fast ",
            " --bounces 1 ": " --bounces 1 --bounce-rays 16 ",
@@ -170,7 +173,8 @@ class HowTo(BenchRecordsTest):
         """Designs once and copies the result for each command."""
         if not hasattr(HowTo, "designed"):
             HowTo.designed = tempfile.TemporaryDirectory(prefix="tofsmith-designed-")
-            self.shell("tofsmith design --effort 0 --trials 1000 --force -o " + HowTo.designed.name)
+            self.shell("tofsmith design --effort 0 --exposures 3 --trials 1000 --force -o "
+                       + HowTo.designed.name)
         shutil.copytree(HowTo.designed.name, self.path("designed"))
 
     def prepare(self, command):
