@@ -274,8 +274,7 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
 
 void add_atlas_codes(const Contenders& contenders, DesignResult& result) {
   for (std::size_t i = 0; i < std::min(max_atlas_codes, contenders.codes.size()); ++i)
-    if (first_like(contenders.codes, i) == i)
-      result.candidates.push_back({.code = contenders.codes[i], .method = "atlas"});
+    result.candidates.push_back({.code = contenders.codes[i], .method = "atlas"});
   leave_out(result, contenders, "atlas codes");
 }
 

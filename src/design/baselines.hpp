@@ -54,7 +54,7 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
 Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options,
                                   std::optional<int> trials = {});
 
-/// Adds the best four as candidates, equal codes once, and records which codes cannot compete.
+/// Adds the best four as candidates and records which codes cannot compete.
 void add_atlas_codes(const Contenders& contenders, DesignResult& result);
 
 }  // namespace tofsmith

@@ -230,12 +230,25 @@ TEST(ContendingFamilies, IncludeTheBestOfAllFamilies) {
   }
 }
 
-TEST(ContendingFamilies, EqualAtlasCodesAreListedOnce) {
-  const CodeSet code = build_family("sinusoid-k4", coarse_camera("paper-10f0"));
-  DesignResult result;
-  add_atlas_codes({{code, code.renamed("equal")}, {}}, result);
-  ASSERT_EQ(result.candidates.size(), 1u);
-  EXPECT_EQ(result.candidates.front().code.name(), "sinusoid-k4");
+TEST(ContendingFamilies, TheBestAtlasCodeIsFoundForEverySeedAndEqualOnesCountOnce) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.fundamental_frequency_hz = 31.4e6;
+  camera.sensor.taps = 2;
+  camera.light.peak_factor = 13.4;
+  camera.light.impulse_response.f_max_hz = camera.sensor.impulse_response.f_max_hz = 336e6;
+  camera.operating.error = DepthErrorKind::linear;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    std::vector<std::string> of_four_exposures;
+    const std::vector<CodeSet> codes = contending_atlas_codes(camera, {.seed = seed}).codes;
+    for (const CodeSet& code : codes) {
+      if (code.exposures() == 4) of_four_exposures.push_back(code.name());
+      EXPECT_EQ(std::ranges::count_if(
+                    codes, [&](const CodeSet& other) { return has_same_waveforms(code, other); }),
+                1)
+          << code.name();
+    }
+    EXPECT_THAT(of_four_exposures, testing::Contains("atlas-4x2-peak8-hann10-linear")) << seed;
+  }
 }
 
 TEST(ContendingFamilies, ReportWhyOthersCannotCompete) {

@@ -39,7 +39,7 @@ Answer about() {
   answer["families"] = shown_families;
   answer["cameras"] = built_in_camera_names();
   answer["scenes"] = built_in_scene_names();
-  Json filters = Json::array({"off"});
+  Json filters = Json::array();
   for (const FilterStrength strength : all_values<FilterStrength>)
     filters.push_back(name_of(strength));
   answer["filters"] = std::move(filters);
