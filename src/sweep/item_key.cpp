@@ -304,13 +304,14 @@ std::string item_result_json(const DepthErrorReport& report, const CodeSet* desi
 
 ItemResult parse_item_result(const std::string& json, const std::string& code,
                              std::string_view file) {
-  nlohmann::json entry = parse_json(json, file);
-  if (!entry.is_object()) JsonReader(entry, file).mistyped("the result of an item");
+  Document document = parse_json(json, file);
+  const ValueReader reader(document);
+  nlohmann::json& entry = document.root();
+  if (!entry.is_object()) reader.mistyped("the result of an item");
   entry["name"] = code;
-  const JsonReader reader(entry, file);
   ItemResult result{depth_error_from_json(reader, reader), {}};
-  if (entry.contains("designed"))
-    result.designed = parse_code_json(entry["designed"].dump(), file).renamed(code);
+  if (const auto designed = reader.optional_member("designed"))
+    result.designed = code_from_json(*designed).renamed(code);
   return result;
 }
 

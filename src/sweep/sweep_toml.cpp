@@ -9,7 +9,7 @@
 
 #include "core/shared/text_numbers.hpp"
 #include "io/shared/read_file.hpp"
-#include "io/text/shared/table_reader.hpp"
+#include "io/text/shared/reader.hpp"
 #include "io/text/shared/text_lines.hpp"
 #include "sweep/item_key.hpp"
 #include "tofsmith/core/error.hpp"
@@ -22,14 +22,14 @@ namespace tofsmith {
 namespace {
 
 /// Returns a number, or else a string.
-SettingValue toml_value_of_line(const std::string& line, std::string place) {
+SettingValue setting_value_of_line(const std::string& line, std::string place) {
   double number = 0.0;
   const char* const end = line.data() + line.size();
   const auto [stopped, error] = std::from_chars(line.data(), end, number);
   if (error == std::errc() && stopped == end && std::isfinite(number))
     return {line, line, number, std::move(place)};
   if (line == "true" || line == "false") return {line, line, {}, std::move(place)};
-  return toml_value_of(toml::value<std::string>(line), std::move(place));
+  return setting_value(line, std::move(place));
 }
 
 constexpr std::int64_t max_axis_values = 1'000'000;
@@ -82,7 +82,7 @@ std::vector<SettingValue> range_values(const TableReader& table, double from, do
   std::vector<SettingValue> values;
   const auto count = static_cast<std::int64_t>(std::floor(steps * (1 + 1e-12) + 1e-9));
   for (std::int64_t i = 0; i <= count; ++i)
-    values.push_back(toml_value_of(rounded(from + static_cast<double>(i) * step), place));
+    values.push_back(setting_value(rounded(from + static_cast<double>(i) * step), place));
   return values;
 }
 
@@ -97,7 +97,7 @@ std::vector<SettingValue> logarithmic_values(const TableReader& table, double fr
   for (int i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / (count - 1);
     const double value = i + 1 == count ? to : from * std::pow(to / from, share);
-    values.push_back(toml_value_of(rounded(value), place));
+    values.push_back(setting_value(rounded(value), place));
   }
   return values;
 }
@@ -149,7 +149,7 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
       throw IoError(place,
                     "found a line that is not a value; expected a number, a word, a path or a text "
                     "in quotes");
-    values.push_back(toml_value_of_line(value, place));
+    values.push_back(setting_value_of_line(value, place));
     if (const auto read = values.back().number; read && !is_measured(*read))
       throw IoError(place, fmt::format("found {}, which SCPI instruments return for invalid "
                                        "measurements; expected a measured value",
@@ -189,10 +189,10 @@ std::vector<SettingValue> values_of_keys(const SettingValue& entry,
                                          const std::vector<std::string>& keys) {
   if (keys.size() == 1 || !entry.text.starts_with('['))
     return std::vector<SettingValue>(keys.size(), entry);
-  const TomlDocument document("entry = " + entry.text, entry.place);
+  const Document document = parse_toml("entry = " + entry.text, entry.place);
   std::vector<SettingValue> values;
-  for (const toml::node& element : *document.root()["entry"].as_array())
-    values.push_back(toml_value_of(element, entry.place));
+  for (const nlohmann::json& element : document.root().at("entry"))
+    values.push_back(setting_value(element, entry.place));
   if (values.size() != keys.size())
     throw IoError(entry.place,
                   fmt::format("found {}; expected one value for all of {}, or a list of {}, one "
@@ -317,10 +317,11 @@ bool set_field_of(Struct& its, std::string_view key, const SettingValue& value) 
 
 /// Reads a key at the top level.
 template <typename Value>
-void read_field(const TomlDocument& document, TableReader& table, const Field<Value>& field) {
+void read_field(TableReader& table, const Field<Value>& field) {
   if (!table.contains(field.name)) return;
-  const toml::node& node = *document.root().get(field.name);
-  set_field(field, toml_value_of(node, document.place_of(node.source())));
+  SettingValue value;
+  table.value(field.name, value);
+  set_field(field, value);
 }
 
 /// Reads `codes = [...]`, an axis that is combined with every other axis.
@@ -342,7 +343,7 @@ void read_group(TableReader& table, SweepSpec& spec) {
   std::string name;
   SweepCombination combine = SweepCombination::zip;
   table.required("name", "\"optics\"").value("name", name);
-  table.required("combine", "\"product\"").choice("combine", combine);
+  table.required("combine", "\"product\"").value("combine", combine);
   std::vector<std::string> names;
   for (const SweepAxis& axis : spec.axes)
     if (!axis.group.empty()) names.push_back(axis.group);
@@ -416,17 +417,16 @@ bool set_value(ItemValues& item, std::string_view key, const SettingValue& value
 }
 
 SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) {
-  const TomlDocument document(text, source_name);
+  const Document document = parse_toml(text, source_name);
   SweepSpec spec;
   spec.source_name = source_name;
   spec.directory = std::filesystem::path(source_name).parent_path();
-  TableReader::Places places;
-  TableReader table(document, places);
+  TableReader table(document);
   table.value("camera", spec.camera);
   table.value("set", spec.settings);
-  table.choice("combine", spec.combine);
-  for_each_field(spec.options, [&](const auto& field) { read_field(document, table, field); });
-  read_field(document, table, Field("effort", spec.effort, closed(0.01, 100)));
+  table.value("combine", spec.combine);
+  for_each_field(spec.options, [&](const auto& field) { read_field(table, field); });
+  read_field(table, Field("effort", spec.effort, closed(0.01, 100)));
   read_codes(table, spec);
   table.tables("axis", [&](TableReader& inner) {
     for (SweepAxis& axis : read_sweep_axes(inner)) spec.axes.push_back(std::move(axis));

@@ -60,9 +60,8 @@ inline void describe(FieldVisitor& fields, Housing& housing) {
 namespace {
 
 Housing parse(std::string_view text) {
-  const TomlDocument document(text, "h.toml");
-  TableReader::Places places;
-  TableReader table(document, places);
+  const Document document = parse_toml(text, "h.toml");
+  TableReader table(document);
   Housing housing;
   FieldReader reader(table);
   describe(reader, housing);

@@ -52,8 +52,8 @@ using testing::HasSubstr;
 
 template <typename Struct>
 Struct read_back(const nlohmann::ordered_json& json) {
-  const nlohmann::json document = parse_json(json.dump(), "a.json");
-  return fields_from_json<Struct>(JsonReader(document, "a.json"));
+  const Document document = parse_json(json.dump(), "a.json");
+  return fields_from_json<Struct>(ValueReader(document));
 }
 
 template <typename Struct>

@@ -65,7 +65,7 @@ std::string calibrated_camera_toml(const Camera& camera);
 /// Returns a lens as JSON on one line, with the keys of a camera file.
 std::string lens_to_json(const Lens& lens);
 /// Inverse of lens_to_json(); does not check the values.
-/// @throws IoError "lens:line:column: ..." for a wrong key or type
+/// @throws IoError "lens: ..." for invalid JSON, or a wrong key or type
 Lens lens_from_json(const std::string& json);
 /// Returns the rays of Lens::rays, or of the view if the lens has no map.
 /// @throws IoError if the map cannot be read, or has another shape or rays that do not point

@@ -42,7 +42,7 @@ Json details_json(const Candidate& candidate) {
   return details;
 }
 
-void read_details(const JsonReader& details, int samples, Candidate& candidate) {
+void read_details(const ValueReader& details, int samples, Candidate& candidate) {
   candidate.message = details.member("message").text();
   const std::size_t measurements = candidate.per_measurement.size();
   if (measurements == 0) return;
@@ -60,7 +60,7 @@ void read_details(const JsonReader& details, int samples, Candidate& candidate) 
   }
   const auto histories = details.member("histories").elements(measurements, "one per measurement");
   for (std::size_t k = 0; k < histories.size(); ++k)
-    for (const JsonReader& entry : histories[k].elements())
+    for (const ValueReader& entry : histories[k].elements())
       candidate.per_measurement[k].history.push_back(row_from_json<FactorizeIteration>(entry));
 }
 
@@ -82,9 +82,7 @@ std::string design_key(const Camera& camera, DesignOptions options) {
   return fmt::format("{:016x}", fnv1a_64(key));
 }
 
-nlohmann::json read_json(const fs::path& path) {
-  return parse_json(read_text_file(path), path.string());
-}
+Document read_json(const fs::path& path) { return parse_json(read_text_file(path), path.string()); }
 
 fs::path code_path(const fs::path& directory, const std::string& name) {
   return directory / "codes" / (file_name_of(name) + ".code.json");
@@ -122,11 +120,10 @@ Json finished_json(const Candidate& candidate) {
           {"details", details_json(candidate)}};
 }
 
-Candidate finished_from_json(const JsonReader& json, const fs::path& path, const std::string& name,
+Candidate finished_from_json(const ValueReader& json, const fs::path& path, const std::string& name,
                              const Camera& camera) {
-  const std::string file = path.string();
   Candidate candidate{
-      .code = parse_code_json(json.member("code").dump(), file),
+      .code = code_from_json(json.member("code")),
       .method = json.member("method").text(),
       .iterations = json.member("iterations").integer(0, std::numeric_limits<int>::max()),
       .seconds = json.member("seconds").number(),
@@ -139,12 +136,11 @@ Candidate finished_from_json(const JsonReader& json, const fs::path& path, const
 /// Returns none if the candidates were designed from other inputs.
 std::vector<Candidate> read_finished(const fs::path& path, const std::string& key,
                                      const std::string& name, const Camera& camera) {
-  const nlohmann::json document = read_json(path);
-  const std::string file = path.string();
-  const JsonReader json(document, file);
+  const Document document = read_json(path);
+  const ValueReader json(document);
   std::vector<Candidate> candidates;
   if (json.member("key").text() != key) return candidates;
-  for (const JsonReader& entry : json.member("candidates").elements())
+  for (const ValueReader& entry : json.member("candidates").elements())
     candidates.push_back(finished_from_json(entry, path, name, camera));
   return candidates;
 }
@@ -197,16 +193,15 @@ void DesignDirectory::write(const Camera& camera, const DesignResult& result,
 
 DesignRecord DesignDirectory::read() const {
   const fs::path path = path_ / "design.json", details_path = path_ / "details.json";
-  const nlohmann::json document_json = read_json(path), details_json = read_json(details_path);
-  const std::string file = path.string(), details_file = details_path.string();
-  const JsonReader document(document_json, file), details(details_json, details_file);
-  if (const JsonReader version = document.member("tofsmith"); version.text() != TOFSMITH_VERSION)
+  const Document document_json = read_json(path), details_json = read_json(details_path);
+  const ValueReader document(document_json), details(details_json);
+  if (const ValueReader version = document.member("tofsmith"); version.text() != TOFSMITH_VERSION)
     version.mistyped("\"" TOFSMITH_VERSION
                      "\"; read the design with the version that wrote it, or repeat it");
   DesignRecord record{read_camera_toml(path_ / "camera.toml"), {}};
   DesignResult& result = record.result;
   const std::string best = document.member("best").text();
-  for (const JsonReader& entry : document.member("codes").elements()) {
+  for (const ValueReader& entry : document.member("codes").elements()) {
     const std::string name = entry.member("name").text();
     if (result.find(name)) entry.fail(fmt::format("contains the code \"{}\" twice", name));
     const fs::path code_file = code_path(path_, name);
@@ -237,9 +232,9 @@ DesignRecord DesignDirectory::read() const {
     result.candidates.push_back(std::move(candidate));
   }
   if (!result.find(best)) document.member("best").mistyped("the name of one of the codes");
-  for (const JsonReader& reason : document.member("left_out").elements())
+  for (const ValueReader& reason : document.member("left_out").elements())
     result.left_out.push_back(reason.text());
-  for (const JsonReader& sentence : document.member("explanation").elements())
+  for (const ValueReader& sentence : document.member("explanation").elements())
     result.explanation.push_back(sentence.text());
   return record;
 }

@@ -39,11 +39,11 @@ Json error_json(const SceneError& e) {
           {"outlier_threshold_m", e.outlier_threshold_m}};
 }
 
-double share(const JsonReader& json, std::string_view member) {
+double share(const ValueReader& json, std::string_view member) {
   return json.member(member).number(0.0, 1.0, 1e-9);
 }
 
-SceneError error_from_json(const JsonReader& json) {
+SceneError error_from_json(const ValueReader& json) {
   const auto length_m = [&](std::string_view member) {
     return json.member(member).number(0.0, infinity, 0.0);
   };
@@ -78,15 +78,16 @@ SceneImage read_truth(const fs::path& directory) {
   return truth;
 }
 
-Image<float> read_plane_file(const JsonReader& json, std::string_view member, std::string_view what,
-                             const fs::path& directory, const SceneImage& truth) {
+Image<float> read_plane_file(const ValueReader& json, std::string_view member,
+                             std::string_view what, const fs::path& directory,
+                             const SceneImage& truth) {
   const std::string file = json.member(member).text();
   if (fs::path(file).has_parent_path())
     json.member(member).mistyped("a file of the same directory");
   return read_image_plane(directory / file, what, truth);
 }
 
-SceneDecoding read_decoding(const JsonReader& json, const fs::path& directory,
+SceneDecoding read_decoding(const ValueReader& json, const fs::path& directory,
                             const SceneImage& truth) {
   SceneDecoding decoding{.code = json.member("code").text(),
                          .depth_m = read_plane_file(json, "file", "depth", directory, truth),
@@ -144,9 +145,8 @@ bool holds_scene_result(const fs::path& directory) { return fs::exists(directory
 
 SceneResult read_scene_result(const fs::path& directory) {
   const fs::path path = directory / "scene.json";
-  const std::string file = path.string();
-  const nlohmann::json json = parse_json(read_text_file(path), file);
-  const JsonReader document(json, file), view = document.member("view");
+  const Document json = parse_json(read_text_file(path), path.string());
+  const ValueReader document(json), view = document.member("view");
   SceneResult scene{.name = document.member("name").text(),
                     .truth = read_truth(directory),
                     .reference_distance_m = document.member("reference_distance_m").number()};
@@ -156,11 +156,11 @@ SceneResult read_scene_result(const fs::path& directory) {
   } catch (const std::invalid_argument& error) {
     view.fail(error.what());
   }
-  for (const JsonReader& entry : document.member("captures").elements()) {
+  for (const ValueReader& entry : document.member("captures").elements()) {
     SceneCapture capture{.light = entry.member("light").text(),
                          .point = {entry.member("signal_e_per_s").number(),
                                    entry.member("ambient_e_per_s").number()}};
-    for (const JsonReader& decoding : entry.member("decodings").elements())
+    for (const ValueReader& decoding : entry.member("decodings").elements())
       capture.decodings.push_back(read_decoding(decoding, directory, scene.truth));
     scene.captures.push_back(std::move(capture));
   }

@@ -11,7 +11,6 @@
 #include <set>
 #include <sstream>
 
-#include "core/shared/text_numbers.hpp"
 #include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/field_toml.hpp"
@@ -26,10 +25,8 @@ nlohmann::ordered_json lens_document(const Lens& lens) { return described_json(l
 
 std::string lens_to_json(const Lens& lens) { return lens_document(lens).dump(); }
 
-Lens lens_from_json(const std::string& json) {
-  const TomlDocument document(format_toml(nlohmann::ordered_json::parse(json)), "lens");
-  TableReader::Places places;
-  TableReader table(document, places);
+Lens lens_from_json(const ValueReader& json) {
+  TableReader table(json);
   FieldReader reader(table);
   Lens lens;
   describe(reader, lens);
@@ -37,12 +34,9 @@ Lens lens_from_json(const std::string& json) {
   return lens;
 }
 
-Lens lens_from_json(const JsonReader& json) {
-  try {
-    return lens_from_json(json.dump());
-  } catch (const IoError& error) {
-    json.fail(error.what());
-  }
+Lens lens_from_json(const std::string& json) {
+  const Document document(parse_json(json, "lens").root(), "lens", Syntax::toml);
+  return lens_from_json(ValueReader(document));
 }
 
 nlohmann::ordered_json camera_document(const Camera& camera) {
@@ -215,63 +209,49 @@ std::string raw_format_keys_json() { return keys_json(RawFormat()); }
 
 namespace {
 
-bool is_part_of_name(char c) { return is_letter_or_digit(c) || c == '_'; }
-
-/// Returns the position in the file of a field that Camera::validate() reports, or of its table.
-std::string place_of_field(const std::string& field, const TableReader::Places& places,
-                           const std::string& source_name) {
-  std::string place = source_name;
-  for (const auto& [key, where] : places)
-    if (field.starts_with(key) &&
-        (field.size() == key.size() || !is_part_of_name(field[key.size()])))
-      place = where;
-  return place;
-}
-
-void load_response(const std::string& name, const FieldReader& reader,
-                   const TableReader::Places& places, ImpulseResponse& response) {
+void load_response(const std::string& name, const FieldReader& reader, const Document& document,
+                   ImpulseResponse& response) {
   if (response.kind != ImpulseResponse::Kind::file) return;
   const auto file = reader.files().find(name + ".file");
   if (file == reader.files().end()) return;
   std::optional<double> time_step_s;
-  if (places.contains(name + ".time_step_s")) time_step_s = response.time_step_s;
+  if (document.root().contains(pointer_to(name + ".time_step_s")))
+    time_step_s = response.time_step_s;
   response = read_impulse_response(file->second, time_step_s);
 }
 
-void load_lens(const FieldReader& reader, const TomlDocument& document, std::optional<Lens>& lens) {
+void load_lens(const FieldReader& reader, const Document& document, std::optional<Lens>& lens) {
   const auto file = reader.files().find("lens.calibration");
   if (file == reader.files().end()) return;
   std::optional<DistortionModel> model;
   if (lens->distortion) model = lens->distortion->model;
-  const auto camera = document.root().at_path("lens.calibration_camera").value_or(std::string());
+  const auto camera = document.root().at("lens").value("calibration_camera", std::string());
   lens = read_lens_calibration(file->second, model, camera);
 }
 
 }  // namespace
 
 Camera parse_camera_toml(std::string_view text, std::string_view source_name, Settings settings) {
-  TomlDocument document(text, source_name);
+  Document document = parse_toml(text, source_name, settings);
   document.suggest_keys([](std::string_view key) {
     const std::string similar = similar_camera_key(key);
     return similar == key ? "" : similar;  // a key under another condition
   });
-  for (const std::string& setting : settings) document.apply(setting);
 
   Camera camera;
   camera.name = std::filesystem::path(source_name).stem().string();
   camera.operating = default_operating_range();
-  TableReader::Places places;
-  TableReader table(document, places);
+  TableReader table(document);
   FieldReader reader(table);
   describe(reader, camera);
   table.finish();
-  load_response("light.impulse_response", reader, places, camera.light.impulse_response);
-  load_response("sensor.impulse_response", reader, places, camera.sensor.impulse_response);
+  load_response("light.impulse_response", reader, document, camera.light.impulse_response);
+  load_response("sensor.impulse_response", reader, document, camera.sensor.impulse_response);
   load_lens(reader, document, camera.lens);
   try {
     camera.validate();
   } catch (const InvalidArgument& error) {
-    throw IoError(place_of_field(error.field(), places, document.source_name()), error.what());
+    throw IoError(document.place_of_field(error.field()), error.what());
   }
   return camera;
 }

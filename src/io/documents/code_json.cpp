@@ -58,7 +58,7 @@ OrderedJson provenance_to_json(const Provenance& provenance) {
           {"residuals", provenance.residuals}, {"depth_error_m", provenance.depth_error_m}};
 }
 
-Waveform read_sampled(const JsonReader& json, int samples, double lowest, double highest) {
+Waveform read_sampled(const ValueReader& json, int samples, double lowest, double highest) {
   json.only({"kind", "values"});
   const auto values =
       json.member("values").elements(static_cast<std::size_t>(samples), "as specified by /samples");
@@ -68,15 +68,15 @@ Waveform read_sampled(const JsonReader& json, int samples, double lowest, double
   return Waveform::sampled(std::move(read));
 }
 
-Waveform read_binary(const JsonReader& json, double highest) {
+Waveform read_binary(const ValueReader& json, double highest) {
   json.only({"kind", "level", "on"});
-  const JsonReader on_place = json.member("on");
+  const ValueReader on_place = json.member("on");
   std::vector<OnInterval> on;
-  for (const JsonReader& interval : on_place.elements()) {
+  for (const ValueReader& interval : on_place.elements()) {
     const auto edges = interval.elements(2, "[rise, fall]");
     on.push_back({edges[0].number(), edges[1].number()});
   }
-  const JsonReader level_place = json.member("level");
+  const ValueReader level_place = json.member("level");
   const double level = level_place.number(0.0, highest, tolerance);
   if (level <= 0.0) level_place.mistyped("a number > 0");
   try {
@@ -88,11 +88,11 @@ Waveform read_binary(const JsonReader& json, double highest) {
 
 /// Reads x(t) = mean + 2 Re sum of c_n exp(2 pi i n t).
 /// @param lowest, highest  limits of x
-Waveform read_cosines(const JsonReader& json, double lowest, double highest) {
+Waveform read_cosines(const ValueReader& json, double lowest, double highest) {
   json.only({"kind", "mean", "harmonics"});
   Eigen::VectorXcd coefficients(1);
   coefficients[0] = json.member("mean").number(lowest, highest, tolerance);
-  for (const JsonReader& entry : json.member("harmonics").elements()) {
+  for (const ValueReader& entry : json.member("harmonics").elements()) {
     const auto fields = entry.elements(3, "[n, real part, imaginary part]");
     const int n = fields[0].integer(1, max_harmonic);
     const Eigen::Index old_size = coefficients.size();
@@ -108,8 +108,8 @@ Waveform read_cosines(const JsonReader& json, double lowest, double highest) {
   return waveform;
 }
 
-Waveform read_waveform(const JsonReader& json, int samples, double highest) {
-  const JsonReader kind = json.member("kind");
+Waveform read_waveform(const ValueReader& json, int samples, double highest) {
+  const ValueReader kind = json.member("kind");
   if (kind.text() == "binary") return read_binary(json, highest);
   if (kind.text() == "sampled") return read_sampled(json, samples, 0.0, highest);
   if (kind.text() == "cosines") return read_cosines(json, 0.0, highest);
@@ -117,8 +117,8 @@ Waveform read_waveform(const JsonReader& json, int samples, double highest) {
 }
 
 /// Reads the drive of a mixer: (w + 1) / 2 for sampled weights w; 1 or 0 for binary weights.
-Waveform read_drive(const JsonReader& json, int samples) {
-  const JsonReader kind = json.member("kind");
+Waveform read_drive(const ValueReader& json, int samples) {
+  const ValueReader kind = json.member("kind");
   if (kind.text() == "sampled")
     return Waveform::sampled(
         (0.5 * (read_sampled(json, samples, -1.0, 1.0).samples().array() + 1.0)).max(0.0).min(1.0));
@@ -126,20 +126,20 @@ Waveform read_drive(const JsonReader& json, int samples) {
   return read_waveform(json, samples, 1.0);
 }
 
-Eigen::MatrixXd read_rows(const JsonReader& json, int samples, int count) {
+Eigen::MatrixXd read_rows(const ValueReader& json, int samples, int count) {
   constexpr double any = std::numeric_limits<double>::max();
   const auto list = json.elements(static_cast<std::size_t>(count), "as specified by /taps");
   Eigen::MatrixXd rows(samples, count);
   for (int k = 0; k < count; ++k) {
-    const JsonReader& row = list[static_cast<std::size_t>(k)];
-    if (const JsonReader kind = row.member("kind"); kind.text() != "sampled")
+    const ValueReader& row = list[static_cast<std::size_t>(k)];
+    if (const ValueReader kind = row.member("kind"); kind.text() != "sampled")
       kind.mistyped("\"sampled\" for rows");
     rows.col(k) = read_sampled(row, samples, -any, any).samples();
   }
   return rows;
 }
 
-Provenance read_provenance(const JsonReader& json) {
+Provenance read_provenance(const ValueReader& json) {
   json.only({"method", "camera", "seed", "version", "residuals", "depth_error_m"});
   Provenance read;
   if (const auto method = json.optional_member("method")) read.method = method->text();
@@ -147,26 +147,26 @@ Provenance read_provenance(const JsonReader& json) {
   if (const auto seed = json.optional_member("seed")) read.seed = seed->unsigned_integer();
   if (const auto version = json.optional_member("version")) read.version = version->text();
   if (const auto residuals = json.optional_member("residuals"))
-    for (const JsonReader& residual : residuals->elements())
+    for (const ValueReader& residual : residuals->elements())
       read.residuals.push_back(residual.number());
   if (const auto error = json.optional_member("depth_error_m"))
     read.depth_error_m = error->number();
   return read;
 }
 
-void check_format(const JsonReader& json) {
+void check_format(const ValueReader& json) {
   const auto format = json.optional_member("format");
   if (!format)
     json.fail(fmt::format("found no member \"format\"; expected \"format\": \"{}\"", format_name));
   if (format->text() != format_name) format->mistyped(fmt::format("\"{}\"", format_name));
-  const JsonReader version = json.member("version");
+  const ValueReader version = json.member("version");
   if (version.integer(1, std::numeric_limits<int>::max()) != format_version)
     version.mistyped(fmt::format("{}: a newer tofsmith wrote this file", format_version));
 }
 
-CodeSet with_shares(const JsonReader& json, const CodeSet& code) {
+CodeSet with_shares(const ValueReader& json, const CodeSet& code) {
   std::vector<double> shares;
-  for (const JsonReader& share :
+  for (const ValueReader& share :
        json.elements(static_cast<std::size_t>(code.exposures()), "one per exposure"))
     shares.push_back(share.number());
   try {
@@ -177,7 +177,7 @@ CodeSet with_shares(const JsonReader& json, const CodeSet& code) {
 }
 
 /// Returns the waveform named by a field of CodeSet::create() ("demodulation 3 minimum").
-JsonReader place_of_field(const JsonReader& json, std::string_view field) {
+ValueReader place_of_field(const ValueReader& json, std::string_view field) {
   for (const std::string_view list : {"modulation", "demodulation"}) {
     if (!field.starts_with(list)) continue;
     std::size_t index = 0;
@@ -208,9 +208,7 @@ std::string code_to_json(const CodeSet& code) {
   return format_json(json) + "\n";
 }
 
-CodeSet parse_code_json(std::string_view text, std::string_view file) {
-  const nlohmann::json document = parse_json(text, file);
-  const JsonReader json(document, file);
+CodeSet code_from_json(const ValueReader& json) {
   check_format(json);
   json.only({"format", "version", "name", "samples", "exposures", "taps", "rows", "signed",
              "exposure_shares", "modulation", "demodulation", "provenance"});
@@ -221,7 +219,7 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
 
   const auto read_list = [&](const char* member, int count, const char* because, double highest) {
     std::vector<Waveform> list;
-    for (const JsonReader& item :
+    for (const ValueReader& item :
          json.member(member).elements(static_cast<std::size_t>(count), because))
       list.push_back(read_waveform(item, samples, highest));
     return list;
@@ -241,7 +239,7 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
     if (exposures != 1) json.member("exposures").mistyped("1 for rows");
     weights = read_rows(json.member("demodulation"), samples, taps);
   } else if (is_signed) {
-    for (const JsonReader& item :
+    for (const ValueReader& item :
          json.member("demodulation")
              .elements(static_cast<std::size_t>(exposures), "as specified by /exposures"))
       demodulation.push_back(read_drive(item, samples));
@@ -261,6 +259,11 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
   } catch (const InvalidArgument& error) {
     place_of_field(json, error.field()).fail(error.what());
   }
+}
+
+CodeSet parse_code_json(std::string_view text, std::string_view file) {
+  const Document document = parse_json(text, file);
+  return code_from_json(ValueReader(document));
 }
 
 }  // namespace tofsmith

@@ -80,7 +80,7 @@ std::string toml_value(const Json& value) {
 
 }  // namespace
 
-nlohmann::json parse_json(std::string_view text, std::string_view file) {
+Document parse_json(std::string_view text, std::string_view file) {
   constexpr int deepest = 64;
   const auto check_depth = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
     if (depth > deepest)
@@ -93,7 +93,7 @@ nlohmann::json parse_json(std::string_view text, std::string_view file) {
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     throw IoError(place_of(text, zero, file), "found a zero byte; expected a JSON document");
   try {
-    return nlohmann::json::parse(text, check_depth);
+    return {nlohmann::json::parse(text, check_depth), file, Syntax::json};
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     throw IoError(place_of(text, byte, file), problem_of(error.what()));

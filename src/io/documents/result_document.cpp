@@ -67,7 +67,7 @@ Json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials
 
 }  // namespace
 
-DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind) {
+DepthErrorKind parse_word(const ValueReader& json, DepthErrorKind) {
   for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular})
     if (json.text() == name_of(kind)) return kind;
   json.mistyped("linear or circular");
@@ -83,9 +83,9 @@ Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
   return entry;
 }
 
-DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document) {
+DepthErrorReport depth_error_from_json(const ValueReader& entry, const ValueReader& document) {
   auto report = fields_from_json<DepthErrorReport>(entry);
-  const std::optional<JsonReader> own_trials = entry.optional_member("trials");
+  const std::optional<ValueReader> own_trials = entry.optional_member("trials");
   report.trials =
       static_cast<std::int64_t>(own_trials.value_or(document.member("trials")).unsigned_integer());
   report.seed = document.member("seed").unsigned_integer();
@@ -135,10 +135,10 @@ Json measurements_json(const Candidate& candidate) {
   return list;
 }
 
-std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry) {
+std::vector<MeasurementReport> measurements_from_json(const ValueReader& entry) {
   std::vector<MeasurementReport> reports;
   if (const auto list = entry.optional_member("per_measurement"))
-    for (const JsonReader& m : list->elements())
+    for (const ValueReader& m : list->elements())
       reports.push_back(fields_from_json<MeasurementReport>(m));
   return reports;
 }

@@ -76,8 +76,8 @@ void read_texture_fields(TableReader& table, Texture& texture) {
     });
   } else {
     table.refuse({"linear"}, "image");
-    if (const auto at = table.required("pattern", "\"checker\"").word("pattern", patterns))
-      texture.pattern = static_cast<Pattern>(*at);
+    const auto pattern = table.required("pattern", "\"checker\"").find("pattern");
+    texture.pattern = static_cast<Pattern>(pattern->word(patterns));
   }
   read_share(table, "albedo", texture.albedo);
   if (texture.pattern == Pattern::uniform) {
@@ -234,13 +234,11 @@ void read_shapes(TableReader& table, std::string_view key, StagedScene& scene, R
 
 StagedScene parse_scene_toml(std::string_view text, std::string_view source_name,
                              std::span<const std::string> settings) {
-  TomlDocument document(text, source_name);
-  for (const std::string& setting : settings) document.apply(setting);
+  const Document document = parse_toml(text, source_name, settings);
 
   StagedScene scene;
   scene.view = PinholeView::centred(320, 240, std::numbers::pi / 3);
-  TableReader::Places places;
-  TableReader table(document, places);
+  TableReader table(document);
   table.table("view", scene.view, read_view);
   table.table("camera", scene, read_camera);
   read_shapes(table, "plane", scene, read_plane);

@@ -177,24 +177,21 @@ namespace {
 
 /// For a wrong key ending in "_bytes", lists all such keys, because the most similar one is often
 /// wrong.
-void refuse_unknown_gaps(const TomlDocument& document, RawFormat format) {
+void refuse_unknown_gaps(const Document& document, RawFormat format) {
   KeyNames known;
   describe(known, format);
   std::erase_if(known.names, [](const std::string& name) { return !name.ends_with("_bytes"); });
-  for (const auto& [key, node] : document.root())
-    if (key.str().ends_with("_bytes") &&
-        std::ranges::find(known.names, key.str()) == known.names.end())
-      throw IoError(document.place_of(key.source()),
-                    fmt::format("unknown key {}; expected one of {}", key.str(),
-                                fmt::join(known.names, ", ")));
+  for (const auto& [key, value] : document.root().items())
+    if (key.ends_with("_bytes") && std::ranges::find(known.names, key) == known.names.end())
+      throw IoError(document.place_of_key(value), fmt::format("unknown key {}; expected one of {}",
+                                                              key, fmt::join(known.names, ", ")));
 }
 
 }  // namespace
 
 RawFormat parse_raw_format(std::string_view text, std::string_view source_name) {
-  const TomlDocument document(text, source_name);
-  TableReader::Places places;
-  TableReader table(document, places);
+  const Document document = parse_toml(text, source_name);
+  TableReader table(document);
   FieldReader reader(table);
   RawFormat format;
   describe(reader, format);
@@ -203,9 +200,7 @@ RawFormat parse_raw_format(std::string_view text, std::string_view source_name) 
   try {
     format.validate();
   } catch (const InvalidArgument& error) {
-    const std::string key = error.field().substr(0, error.field().find('['));
-    const auto place = places.find(key);
-    throw IoError(place == places.end() ? document.source_name() : place->second, error.what());
+    throw IoError(document.place_of_field(error.field()), error.what());
   }
   return format;
 }

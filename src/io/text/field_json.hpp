@@ -2,55 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
+#include "io/text/shared/reader.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/statistics.hpp"
 
 namespace tofsmith {
-
-/// Value of a JSON document and its path. Every member throws IoError "file: /json/pointer: found
-/// ...; expected ...".
-class JsonReader {
- public:
-  /// Both arguments must outlive the reader. @param file  name in error messages
-  JsonReader(const nlohmann::json& document, std::string_view file);
-
-  double number() const;
-  /// Requires a number in [low, high].
-  double number(double low, double high, double tolerance) const;
-  bool is_null() const { return value_->is_null(); }
-  bool boolean() const;
-  int integer(int low, int high) const;
-  std::uint64_t unsigned_integer() const;
-  std::string text() const;
-  std::string dump() const { return value_->dump(); }
-
-  /// @param count  required number; `because` explains it in errors
-  std::vector<JsonReader> elements() const;
-  std::vector<JsonReader> elements(std::size_t count, std::string_view because) const;
-
-  /// Rejects other members; suggests the most similar known one.
-  void only(std::initializer_list<std::string_view> members) const;
-  JsonReader member(std::string_view name) const;
-  std::optional<JsonReader> optional_member(std::string_view name) const;
-
-  [[noreturn]] void fail(std::string_view problem) const;
-  [[noreturn]] void mistyped(std::string_view expected) const;
-
- private:
-  JsonReader(const nlohmann::json& value, std::string_view file, std::string pointer);
-  void check_object() const;
-
-  const nlohmann::json* value_;
-  std::string_view file_;
-  std::string pointer_;
-};
 
 // Conversion of structs to and from JSON objects by their fields (core/fields.hpp). Numbers that
 // are not finite become null. In lists, structs that contain only doubles become lists.
@@ -82,41 +38,32 @@ nlohmann::ordered_json row_json(const Struct& its) {
 /// Inverse of fields_json(), without FieldMark::apart fields.
 /// @throws IoError naming file and member if it is missing or out of range
 template <typename Struct>
-Struct fields_from_json(const JsonReader& json);
+Struct fields_from_json(const ValueReader& json);
 template <typename Struct>
-Struct row_from_json(const JsonReader& json);
+Struct row_from_json(const ValueReader& json);
 
 namespace detail {
 
 /// Null is infinity if the range includes infinity.
-double read_number(const JsonReader& json, const Range& range);
-int read_integer(const JsonReader& json, const Range& range);
-void read_estimate(const JsonReader& object, const Field<Estimate>& field);
+double read_number(const ValueReader& json, const Range& range);
+int read_integer(const ValueReader& json, const Range& range);
+void read_estimate(const ValueReader& object, const Field<Estimate>& field);
 
-inline void read_value(const JsonReader& json, double& value, const Range& range) {
-  value = read_number(json, range);
-}
-inline void read_value(const JsonReader& json, int& value, const Range& range) {
-  value = read_integer(json, range);
-}
-inline void read_value(const JsonReader& json, std::int64_t& value, const Range&) {
-  value = static_cast<std::int64_t>(json.unsigned_integer());
-}
-inline void read_value(const JsonReader& json, std::uint64_t& value, const Range&) {
-  value = json.unsigned_integer();
-}
-inline void read_value(const JsonReader& json, bool& value, const Range&) {
-  value = json.boolean();
-}
-inline void read_value(const JsonReader& json, std::string& value, const Range&) {
-  value = json.text();
+template <typename Value>
+void read_value(const ValueReader& json, Value& value, const Range& range) {
+  if constexpr (std::is_same_v<Value, double>)
+    value = read_number(json, range);
+  else if constexpr (std::is_same_v<Value, int>)
+    value = read_integer(json, range);
+  else
+    json.read(value);
 }
 
 template <typename Struct>
-void read_fields(const JsonReader& json, Struct& its);
+void read_fields(const ValueReader& json, Struct& its);
 
 template <typename Value>
-void read_field(const JsonReader& object, const Field<Value>& field) {
+void read_field(const ValueReader& object, const Field<Value>& field) {
   if (field.is(FieldMark::apart)) return;
   if constexpr (std::is_same_v<Value, Estimate>) {
     read_estimate(object, field);
@@ -124,13 +71,13 @@ void read_field(const JsonReader& object, const Field<Value>& field) {
     read_fields(field.is(FieldMark::in_place) ? object : object.member(field.document_name),
                 field.value);
   } else {
-    const JsonReader json = object.member(field.document_name);
+    const ValueReader json = object.member(field.document_name);
     if (field.is(FieldMark::may_be_null) && json.is_null()) return;
     if constexpr (is_optional<Value>) {
       if (!json.is_null()) read_fields(json, field.value.emplace());
     } else if constexpr (is_list<Value>) {
       using Item = typename Value::value_type;
-      for (const JsonReader& item : json.elements())
+      for (const ValueReader& item : json.elements())
         if constexpr (!HasFields<Item>)
           read_value(item, field.value.emplace_back(), field.range);
         else if constexpr (is_row<Item>)
@@ -146,28 +93,28 @@ void read_field(const JsonReader& object, const Field<Value>& field) {
 }
 
 template <typename Struct>
-void read_fields(const JsonReader& json, Struct& its) {
+void read_fields(const ValueReader& json, Struct& its) {
   for_each_field(its, [&](const auto& field) { read_field(json, field); });
 }
 
 }  // namespace detail
 
 template <typename Struct>
-Struct fields_from_json(const JsonReader& json) {
+Struct fields_from_json(const ValueReader& json) {
   Struct its;
   detail::read_fields(json, its);
   return its;
 }
 
 template <typename Struct>
-Struct row_from_json(const JsonReader& json) {
+Struct row_from_json(const ValueReader& json) {
   Struct its;
   std::string names;
   std::size_t count = 0;
   for_each_field(its, [&](const auto& field) {
     names += (count++ == 0 ? "" : ", ") + std::string(field.name);
   });
-  const std::vector<JsonReader> row = json.elements(count, names);
+  const std::vector<ValueReader> row = json.elements(count, names);
   count = 0;
   for_each_field(
       its, [&](const auto& field) { detail::read_value(row[count++], field.value, field.range); });

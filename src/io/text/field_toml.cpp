@@ -11,28 +11,27 @@ namespace tofsmith {
 
 void FieldReader::visit(const Key& key, const Value& value) {
   if (!key.example.empty()) table().required_at_end(key.name, key.example);
+  const auto found = table().find(key.name);
+  if (!found) return;
   std::visit(Overloaded{
-                 [&](WordChoice* choice) {
-                   if (const auto index = table().word(key.name, choice->words))
-                     choice->chosen = *index;
-                 },
+                 [&](WordChoice* choice) { choice->chosen = found->word(choice->words); },
                  [&](const NumberOrList& either) {
-                   table().number_or_list(key.name, either.number, either.list);
+                   found->read_number_or_list(either.number, either.list);
                  },
                  [&](const NumberOrWord& either) {
-                   table().number_or_word(key.name, either.number, either.word, either.is_word);
+                   found->read_number_or_word(either.number, either.word, either.is_word);
                  },
-                 [&](const RawNumberList& raw) { table().raw_numbers(key.name, raw.numbers); },
+                 [&](const RawNumberList& raw) { found->read_raw(raw.numbers); },
                  [&](const InputPath& input) {
-                   table().value(key.name, input.path);
+                   found->read(input.path);
                    if (input.path.empty()) return;
                    // Absolute, so that the struct can be read back from another directory.
                    const auto path =
                        std::filesystem::absolute(table().resolve(key.name, input.path));
                    input.path = path.lexically_normal().string();
-                   files_[table().full(key.name)] = input.path;
+                   files_[found->name()] = input.path;
                  },
-                 [&](auto* target) { table().value(key.name, *target); },
+                 [&](auto* target) { found->read(*target); },
              },
              value);
 }
@@ -51,9 +50,9 @@ void FieldReader::refuse(const Key& key, const Value& /*value*/) {
 }
 
 bool FieldReader::enter(const Key& key) {
-  auto inner = table().enter(key.name);
-  if (inner) inner_.push_back(std::move(*inner));
-  return inner.has_value();
+  const auto found = table().find(key.name);
+  if (found) inner_.emplace_back(*found);
+  return found.has_value();
 }
 
 void FieldReader::leave() {

@@ -2,14 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <list>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "io/text/shared/table_reader.hpp"
+#include "io/text/shared/reader.hpp"
 #include "tofsmith/core/field_visitor.hpp"
 
 namespace tofsmith {

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "core/shared/text_numbers.hpp"
-#include "io/text/shared/table_reader.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

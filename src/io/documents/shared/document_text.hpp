@@ -15,7 +15,7 @@
 namespace tofsmith {
 
 /// @throws IoError "file:line:column: ..." at the first syntax error
-nlohmann::json parse_json(std::string_view text, std::string_view file);
+Document parse_json(std::string_view text, std::string_view file);
 
 /// Formats one member per line; lists of plain values, and elements of lists, are on one line.
 /// Numbers are read back exactly.
@@ -29,20 +29,23 @@ std::string format_toml(const nlohmann::ordered_json& document);
 /// Fills in defaults. @throws std::invalid_argument if the camera is invalid
 nlohmann::ordered_json camera_document(const Camera& camera);
 
+/// @throws IoError as parse_code_json()
+CodeSet code_from_json(const ValueReader& json);
+
 nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rotation_bin);
 
 /// Entries do not contain standard errors of outlier rates.
 /// @throws IoError naming file and member
-DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document);
+DepthErrorReport depth_error_from_json(const ValueReader& entry, const ValueReader& document);
 
 /// @throws IoError if the text is not the name of a kind
-DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind);
+DepthErrorKind parse_word(const ValueReader& json, DepthErrorKind);
 
 nlohmann::ordered_json generators_json(const std::vector<GeneratorReport>& reports);
 nlohmann::ordered_json generator_loss_json(const GeneratorLoss& loss, DepthErrorKind kind);
 
 nlohmann::ordered_json measurements_json(const Candidate& candidate);
 /// Omits histories; none if the entry has no `per_measurement`.
-std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry);
+std::vector<MeasurementReport> measurements_from_json(const ValueReader& entry);
 
 }  // namespace tofsmith

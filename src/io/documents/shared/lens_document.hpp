@@ -37,6 +37,6 @@ Lens read_lens_calibration(const std::filesystem::path& path,
 nlohmann::ordered_json lens_document(const Lens& lens);
 
 /// Does not check values. @throws IoError naming file and member
-Lens lens_from_json(const JsonReader& lens);
+Lens lens_from_json(const ValueReader& lens);
 
 }  // namespace tofsmith
