@@ -32,7 +32,7 @@ TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", 
          "estimate": "Estimate", "integer[]": "list[int]", "number[]": "list[float]",
          "text[]": "list[str]", "estimate[]": "list[Estimate]", "image": "npt.NDArray[np.float32]"}
 # Types of fields of structs in a list: one array or list per field.
-COLUMNS = {"integer": "npt.NDArray[np.int64]", "number": "FloatArray", "estimate": "FloatArray",
+COLUMNS = {"boolean": "npt.NDArray[np.bool_]", "integer": "npt.NDArray[np.int64]", "number": "FloatArray", "estimate": "FloatArray",
            "text": "list[str]"}
 # Types in documentation, if different.
 WORDS = {"FloatArray": "ndarray", "npt.NDArray[np.int64]": "ndarray of int64",
@@ -67,7 +67,9 @@ def documentation(field):
     text = field["help"][:1].upper() + field["help"][1:]
     if field.get("error") and not field["as_object"]:
         text += ", and its standard error" if text else "Value and standard error"
-    text += f" [{field['unit']}]" if field["unit"] and text else ""
+    if field["unit"] and text:
+        meaning, mark, remark = text.partition(";")
+        text = f"{meaning} [{field['unit']}]{mark}{remark}"
     return text and text + "."
 
 

@@ -322,6 +322,17 @@ TEST_F(SweepFile, TextHasDelaysInTheUnitOfItsHeader) {
   EXPECT_NEAR(in_metres.delay_periods[1], 0.05, 1e-12);
 }
 
+TEST_F(SweepFile, DelaysHaveAnyUnitOfTime) {
+  for (const auto& [unit, unit_s] :
+       {std::pair(DelayUnit::second, 1.0), std::pair(DelayUnit::millisecond, 1e-3),
+        std::pair(DelayUnit::microsecond, 1e-6), std::pair(DelayUnit::nanosecond, 1e-9),
+        std::pair(DelayUnit::picosecond, 1e-12)}) {
+    const DelaySweep sweep = read_delay_sweep(
+        write("s.csv", rows(21, "")), {.fundamental_frequency_hz = 0.01 / unit_s}, {.unit = unit});
+    EXPECT_NEAR(sweep.delay_periods[1], 0.05, 1e-12) << name_of(unit);
+  }
+}
+
 TEST_F(SweepFile, IsIndependentOfTheDialect) {
   const Camera camera = of_100_ns();
   const DelaySweep expected = read_delay_sweep(write("s.csv", rows(21, "delay_ns,a,b\n")), camera);

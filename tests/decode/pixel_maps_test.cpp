@@ -221,7 +221,9 @@ TEST(DecodedPlanes, DeadPixelsHaveNoValueInAnyPlane) {
   }
 }
 
-TEST(DecodedPlanes, DefaultPlanesAreWritten) {
+TEST(DecodedPlanes, DefaultPlanesFollowFromTheirUse) {
+  EXPECT_EQ(usual_planes().size(), 6u);
+  EXPECT_EQ(usual_planes(true).size(), 9u);
   for (const bool multipath : {false, true})
     for (const PlaneDescription& described : plane_descriptions)
       EXPECT_EQ(

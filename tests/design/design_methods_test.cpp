@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <set>
+#include <string>
 
 #include "design_setup.hpp"
 #include "random_cameras.hpp"
@@ -295,7 +297,8 @@ bool names_a_physical_reason(const std::string& field) {
   return false;
 }
 
-void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
+/// @param methods  receives the methods of all candidates
+void expect_a_code_or_a_reason(std::uint64_t index, double effort, std::set<std::string>& methods) {
   const Camera camera = random_camera(seed, index);
   SCOPED_TRACE(camera.name);
   ASSERT_NO_THROW(camera.validate());
@@ -307,8 +310,10 @@ void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
   try {
     const DesignResult result = design(camera, options);
     EXPECT_EQ(why_not_playable(result.winner().code, camera), std::nullopt);
-    for (const Candidate& c : result.candidates)
+    for (const Candidate& c : result.candidates) {
+      methods.insert(c.method);
       EXPECT_TRUE(std::isfinite(c.error.circular.geometric_mean_m.value)) << c.code.name();
+    }
   } catch (const InvalidArgument& refusal) {
     EXPECT_TRUE(names_a_physical_reason(refusal.field())) << refusal.what();
     EXPECT_LT(std::string(refusal.what()).size(), 700u) << refusal.what();
@@ -319,15 +324,20 @@ TEST(RandomCameras, GiveACodeOrAReasonWithoutEffort) {
   constexpr std::uint64_t slowest = 840;  // takes longer than all others together
   const std::uint64_t cameras = all_are_tried() ? 1000 : repetitions(25u);
   const std::uint64_t step = all_are_tried() ? 1 : 40;
+  std::set<std::string> methods;
   for (std::uint64_t i = 0; i < cameras; ++i)
-    if (all_are_tried() || step * i != slowest) expect_a_code_or_a_reason(step * i, 0.0);
+    if (all_are_tried() || step * i != slowest) expect_a_code_or_a_reason(step * i, 0.0, methods);
+  EXPECT_THAT(methods, testing::IsSupersetOf({"atlas", "family"}));
 }
 
 TEST(RandomCameras, GiveACodeOrAReasonForEveryMethod) {
+  std::set<std::string> methods;
   if (all_are_tried())
-    for (std::uint64_t i = 1000; i < 1050; ++i) expect_a_code_or_a_reason(i, 1.0);
-  else  // naive and factorized codes of one and two taps, the search of rows and of four taps
-    for (const std::uint64_t i : {1009, 1016, 1020, 1041}) expect_a_code_or_a_reason(i, 0.01);
+    for (std::uint64_t i = 1000; i < 1050; ++i) expect_a_code_or_a_reason(i, 1.0, methods);
+  else
+    for (const std::uint64_t i : {1009, 1016, 1020, 1041})
+      expect_a_code_or_a_reason(i, 0.01, methods);
+  EXPECT_THAT(methods, testing::IsSupersetOf({"naive", "factorize", "optimize"}));
 }
 
 }  // namespace

@@ -109,7 +109,9 @@ def test_decoders_can_be_copied_and_pickled(decoder, tmp_path):
     for made in (decoder, ts.Decoder("hamiltonian-k4", camera, method="ml"),
                  ts.Decoder(ts.DecodingTable.of_measured(chi, camera)),
                  ts.Decoder(ts.DecodingTable.of_measured(chi, range_m=9.0)),
-                 ts.Decoder(ts.DecodingTable.load(tmp_path / "table.csv", camera))):
+                 ts.Decoder(ts.DecodingTable.load(tmp_path / "table.csv", camera)),
+                 ts.Decoder(ts.DecodingTable.load(tmp_path / "table.csv", camera, range_m=9.0,
+                                                  reversed=True))):
         again = pickle.loads(pickle.dumps(made))
         assert again.method == made.method
         assert again.decode(raw) == made.decode(raw)

@@ -46,6 +46,7 @@ def functions_with_described_options():
     """Public functions, constructors and methods decorated with takes()."""
     for owner in (*(getattr(ts, name) for name in ts.__all__), *vars(ts.instruments).values()):
         for value in (owner, *(vars(owner).values() if inspect.isclass(owner) else ())):
+            value = getattr(value, "__func__", value)  # of a class method
             wrapped = getattr(value, "__wrapped__", None)
             if inspect.isfunction(wrapped) and "options" in inspect.signature(wrapped).parameters:
                 yield value
@@ -55,7 +56,8 @@ described_functions = list(functions_with_described_options())
 
 
 def test_functions_with_described_options_are_found():
-    assert {ts.Decoder.__init__, ts.evaluate, ts.instruments.upload} <= set(described_functions)
+    assert {ts.Decoder.__init__, ts.DecodingTable.load.__func__, ts.evaluate,
+            ts.instruments.upload} <= set(described_functions)
 
 
 @pytest.mark.parametrize("function", described_functions,

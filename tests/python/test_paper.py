@@ -15,12 +15,13 @@ import tofsmith
 
 pytest.importorskip("matplotlib", reason="matplotlib is not installed")
 from tofsmith import paper  # noqa: E402
+from tofsmith.paper import fig4  # noqa: E402
 from tofsmith.paper._study import Study  # noqa: E402
 from tofsmith.paper.bench import Plane, Sphere, fit_without_outliers  # noqa: E402
 from tofsmith.paper.fig7 import seen_hand  # noqa: E402
 
 HOLDS, IN_PART = "holds", "holds in part"
-# #: Verdicts in the order of each figure's findings; None if few trials leave them undecided.
+#: Verdicts in the order of each figure's findings; None if few trials leave them undecided.
 VERDICTS = {
     "fig2": [HOLDS, HOLDS, HOLDS, IN_PART, HOLDS, HOLDS],
     "fig3": [HOLDS] * 5,
@@ -56,6 +57,13 @@ def test_figure(name, output):
         assert (output / name / f"{picture}.png").read_bytes().startswith(b"\x89PNG")
         assert (output / name / f"{picture}.pdf").read_bytes().startswith(b"%PDF") and caption
     assert f"<h2>{name}: {html.escape(paper.items[name])}</h2>" in (output / "index.html").read_text()
+
+
+def test_every_camera_of_fig4_supports_the_baselines():
+    for limits in fig4.LIMITS.values():
+        camera = fig4.paper_camera(*limits)
+        for name in fig4.BASELINES:
+            assert not tofsmith.why_not_playable(tofsmith.build_family(name, camera), camera)
 
 
 def test_every_figure_has_expected_verdicts():

@@ -125,7 +125,8 @@ class SimulatedGenerator:
             try:
                 data = connection.recv(65536)
                 # Otherwise the next message waits 40 ms for the acknowledgement.
-                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_QUICKACK, 1)
+                if hasattr(socket, "TCP_QUICKACK"):  # Linux
+                    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_QUICKACK, 1)
             except TimeoutError:
                 if self._stops:
                     return

@@ -79,6 +79,8 @@ class FirstPage(LabTest):
               !(node.getAttribute('aria-label') || node.labels?.length || (node.tagName === 'BUTTON' && node.textContent.trim()))).map((node) => node.outerHTML.slice(0, 120));""")
         self.assertEqual(nameless, [])
 
+
+class Page(LabTest):
     def test_plots_can_be_read_and_rotated_by_keys(self):
         said = self.run_script("""
             const press = (node, key) => { node.focus(); node.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true})); return byId('status').textContent; };
@@ -92,8 +94,6 @@ class FirstPage(LabTest):
         self.assertIn("Cramer-Rao", said[2])
         self.assertTrue(said[3])
 
-
-class Page(LabTest):
     def test_every_field_changes_the_camera_and_undo_restores_it(self):
         # With one code and few trials, each step draws less.
         self.run_script("tofsmithLab.store.change((state) => { state.codes.length = 1; state.trials = 100; }); await settled();")
