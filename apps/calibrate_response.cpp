@@ -122,7 +122,7 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
       ->add_option("--arm", arguments->arm,
                    "measured part of the camera; system: light source and sensor together, stored "
                    "as response of the light source")
-      ->check(one_of({"light", "sensor", "system"}))
+      ->check(one_of<ResponseArm>())
       ->capture_default_str();
   command
       ->add_option("--as", arguments->as,

@@ -256,6 +256,7 @@ std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
 template <typename Number>
 std::optional<Number> number_of(const SettingValue& value, std::string_view unit) {
   if constexpr (std::is_floating_point_v<Number>) {
+    if (value.toml == "inf") return infinity;
     const bool has_unit = !value.number && !number_in(value.text);
     return has_unit ? number_in_unit(value.text, unit) : value.number;
   } else {
@@ -278,7 +279,7 @@ void set_field(const Field<Value>& field, const SettingValue& value) {
                   fmt::format("{}: found {}; expected {}", field.name, value.toml, expected));
   };
   if constexpr (HasWords<Value>) {
-    static constexpr auto words = words_of(Value{});
+    constexpr auto& words = all_words<Value>;
     const auto word = std::ranges::find(words, value.text);
     if (word == words.end()) {
       const std::string near = nearest_word(value.text, words);
@@ -295,7 +296,7 @@ void set_field(const Field<Value>& field, const SettingValue& value) {
   } else {
     const std::optional<Value> number = number_of<Value>(value, field.unit());
     if (!number || !field.range.contains(static_cast<double>(*number)))
-      refuse(fmt::format("{} {}", std::is_integral_v<Value> ? "an integer" : "a finite number",
+      refuse(fmt::format("{} {}", std::is_integral_v<Value> ? "an integer" : "a number",
                          field.range.is_restricted ? field.range.text(true) : ">= 0"));
     field.value = *number;
   }

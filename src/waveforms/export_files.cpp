@@ -48,7 +48,8 @@ ExportedScripts export_scripts(const WaveformExport& exported) {
   const std::vector<GeneratorModel> models = models_of_format(exported.format.name);
   ExportedScripts result;
   if (models.empty() && exported.format.content == FormatContent::one_waveform)
-    result.problem = "only siglent-wvdt16, keysight-arb and tek-tfw have scripts";
+    result.problem =
+        fmt::format("no supported generator with two channels reads {}", exported.format.name);
   for (int exposure = 1; exposure <= exported.exposures; ++exposure) {
     UploadRequest request;
     request.channels = selected_channels(exported, {.exposure = exposure});

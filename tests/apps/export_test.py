@@ -39,8 +39,8 @@ class Export(CommandLineTest):
         self.assertIn("1000 MHz", rate)
         self.assertIn("no SCPI script was written: modulation_1 sample_rate_hz", script)
         self.assertEqual(notes("siglent-csv", "--rate", "1.2e9"),
-                         ["no SCPI script was written: only siglent-wvdt16, keysight-arb and tek-tfw "
-                          "have scripts"])
+                         ["no SCPI script was written: no supported generator with two channels "
+                          "reads siglent-csv"])
         self.assertEqual(notes("csv", "--rate", "3.6e9"), [])  # explicitly requested rates are not
                                                                # questioned
         self.assertEqual(notes("csv", "--samples", "120"), [])

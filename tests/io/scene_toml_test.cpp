@@ -99,6 +99,15 @@ TEST(SceneToml, ThePointLookedAtIsInTheImageCentre) {
   EXPECT_GT(scene.camera_to_world.linear()(1, 1), 0.0) << "down stays down";
 }
 
+TEST(SceneToml, ValuesOfShapesHaveUnits) {
+  const StagedScene scene = parse_scene_toml(
+      "[view]\nwidth_px = 64\nheight_px = 48\n[[sphere]]\ncentre_m = [0, \"5 cm\", \"3 m\"]\n"
+      "radius_m = \"50 cm\"\n");
+  const Sphere sphere = first<Sphere>(scene);
+  EXPECT_EQ(sphere.radius_m, 0.5);
+  EXPECT_EQ(sphere.centre, Eigen::Vector3d(0, 0.05, 3));
+}
+
 TEST(SceneToml, TheFocalLengthDefaultsToACentredPinhole) {
   const StagedScene scene = parse_scene_toml(
       "[view]\nwidth_px = 64\nheight_px = 48\nfx_px = 50\ncy_px = 20\n[[sphere]]\ncentre_m = "

@@ -186,7 +186,7 @@ TEST(SweepSpec, RejectsUnknownInputWithItsPlace) {
            {head + "trials = 1\n",
             "s.toml:2:10: trials: found 1; expected an integer in [2, 4000000000]"},
            {head + "outlier_threshold_m = -1\n",
-            "s.toml:2:23: outlier_threshold_m: found -1; expected a finite number >= 0"},
+            "s.toml:2:23: outlier_threshold_m: found -1; expected a number >= 0"},
            {head + "method = \"zncc2\"\n", "s.toml:2:10: method: found \"zncc2\"; expected one of"},
            {head + "codes = [\"a\"]\n", "s.toml:1:8: code: is only valid with no codes"},
            {"codes = []\n", "s.toml:1:9: codes: found an empty list"},

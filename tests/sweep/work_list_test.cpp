@@ -216,7 +216,7 @@ TEST(WorkList, RejectsImpossibleItemsWithTheOffendingValue) {
   refuse("code = \"optimized-k4\"\ntrials = 10\n", "s.toml: ", "must be in [1000, 100000000]");
   refuse("code = \"optimized-k4\"\nmethod = \"ml\"\n", "s.toml: ", "zncc to design codes");
   refuse("code = \"optimized-k0\"\n", "s.toml: ", "must be in [1, 16]");
-  refuse(code + "effort = 0\n", "s.toml:2:10", "expected a finite number in [0.01, 100]");
+  refuse(code + "effort = 0\n", "s.toml:2:10", "expected a number in [0.01, 100]");
   refuse("camera = \"paper\"\n" + code, "s.toml: ", "no built-in camera");
   refuse(code + "set = [\"samles=24\"]\n", "s.toml: setting 'samles=24'", "did you mean samples?");
 }

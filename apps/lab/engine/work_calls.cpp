@@ -151,9 +151,12 @@ Answer scene_answer(const Request& request, const Progress& progress) {
       std::make_unique<Decoder>(make_decoding_table(ForwardModel(code, camera), camera)));
   std::optional<Filter> filter;
   if (filter_options) filter.emplace(backend->decoder().table(), *filter_options);
-  const auto pipeline = backend->prepare({.filter = filter ? &*filter : nullptr}, height, width);
-  pipeline->submit(view_of_frame(captured.raw, 0));
   DepthImage decoded(height, width);
+  const auto pipeline = backend->prepare(
+      {.filter = filter ? &*filter : nullptr,
+       .keeps_filtered = must_keep_filtered({}, DecodedView::of(decoded).planes())},
+      height, width);
+  pipeline->submit(view_of_frame(captured.raw, 0));
   decode_frame(*pipeline, {}, 0, height, DecodedView::of(decoded), parts[1]);
   const SceneImage& truth = captured.truth.front();
   const SceneError error = scene_error(decoded.depth_m, truth, camera, DepthErrorKind::circular);

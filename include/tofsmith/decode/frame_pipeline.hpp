@@ -116,8 +116,9 @@ std::vector<DecodedPlane> planes_for(const PlaneCorrections& corrections,
 bool must_keep_filtered(const PlaneCorrections& corrections,
                         const std::vector<DecodedPlane>& planes);
 
-/// Decodes the ready frame, or rows of it, and corrects its planes. With a spatial filter, a frame
-/// with mixed pixels is filtered again without them.
+/// Decodes the ready frame, or rows of it, and corrects its planes. With a spatial filter, the
+/// pipeline keeps what must_keep_filtered() requires, and a frame with mixed pixels is filtered
+/// again without them.
 /// @param first_row, rows  submitted rows
 /// @param decoded          planes whose first value belongs to the first row; null planes that
 ///                         planes_for() returns are computed in temporary memory

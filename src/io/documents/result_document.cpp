@@ -67,12 +67,6 @@ Json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials
 
 }  // namespace
 
-DepthErrorKind parse_word(const ValueReader& json, DepthErrorKind) {
-  for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular})
-    if (json.text() == name_of(kind)) return kind;
-  json.mistyped("linear or circular");
-}
-
 Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
   Json entry;
   for_each_field(report, [&](const auto& field) {

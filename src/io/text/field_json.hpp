@@ -85,7 +85,7 @@ void read_field(const ValueReader& object, const Field<Value>& field) {
         else
           field.value.push_back(fields_from_json<Item>(item));
     } else if constexpr (std::is_enum_v<Value>) {
-      field.value = parse_word(json, Value{});
+      field.value = static_cast<Value>(json.word(all_words<Value>));
     } else {
       read_value(json, field.value, field.range);
     }

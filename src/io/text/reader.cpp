@@ -128,11 +128,10 @@ double ValueReader::number(std::string_view expected) const {
     return value_->get<double>();
   }
   // "20 MHz" is a number with its unit; "20" is text.
-  if (is_toml() && value_->is_string() && !number_in(value_->get_ref<const std::string&>())) {
-    const std::string key = name();
-    if (const auto number = number_in_unit(value_->get_ref<const std::string&>(),
-                                           unit_of_key(key.substr(0, key.find('[')))))
-      return *number;
+  if (is_toml() && value_->is_string()) {
+    const auto& text = value_->get_ref<const std::string&>();
+    const auto number = number_in(text) ? std::nullopt : number_in_unit(text, unit_of_key(key_));
+    if (number) return *number;
   }
   mistyped(expected);
 }
@@ -185,7 +184,7 @@ std::vector<ValueReader> ValueReader::elements(std::string_view expected) const 
   if (!value_->is_array()) mistyped(expected);
   std::vector<ValueReader> all;
   all.reserve(value_->size());
-  for (const Json& element : *value_) all.push_back(ValueReader(*document_, element));
+  for (const Json& element : *value_) all.push_back(ValueReader(*document_, element, key_));
   return all;
 }
 
@@ -264,7 +263,7 @@ std::optional<ValueReader> ValueReader::optional_member(std::string_view name) c
   require_table("a table");
   const auto found = value_->find(std::string(name));
   if (found == value_->end()) return std::nullopt;
-  return ValueReader(*document_, *found);
+  return ValueReader(*document_, *found, found.key());
 }
 
 ValueReader ValueReader::member(std::string_view name) const {

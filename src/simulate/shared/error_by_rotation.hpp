@@ -137,8 +137,9 @@ inline std::vector<double> smoothed_over_rotations(const std::vector<double>& er
   for (std::ptrdiff_t i = 0; i < count; ++i)
     for (std::ptrdiff_t k = -reach; k <= reach; ++k)
       means[static_cast<std::size_t>(i)] +=
-          static_cast<double>(reach + 1 - std::abs(k)) / total *
+          static_cast<double>(reach + 1 - std::abs(k)) *
           errors[static_cast<std::size_t>((i + count + k) % count)];
+  for (double& mean : means) mean /= total;
   return means;
 }
 

@@ -38,9 +38,6 @@ nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rota
 /// @throws IoError naming file and member
 DepthErrorReport depth_error_from_json(const ValueReader& entry, const ValueReader& document);
 
-/// @throws IoError if the text is not the name of a kind
-DepthErrorKind parse_word(const ValueReader& json, DepthErrorKind);
-
 nlohmann::ordered_json generators_json(const std::vector<GeneratorReport>& reports);
 nlohmann::ordered_json generator_loss_json(const GeneratorLoss& loss, DepthErrorKind kind);
 

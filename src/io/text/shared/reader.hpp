@@ -47,6 +47,11 @@ class Document {
         source_name_(source_name),
         syntax_(syntax),
         positions_(std::move(positions)) {}
+  /// Positions belong to addresses of values, which moves keep.
+  Document(Document&&) = default;
+  Document& operator=(Document&&) = default;
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
 
   /// Sets the function that returns a key of another table to suggest for an unknown key.
   void suggest_keys(std::function<std::string(std::string_view)> suggestion) {
@@ -148,13 +153,14 @@ class ValueReader {
   [[noreturn]] void mistyped(std::string_view expected) const;
 
  protected:
-  ValueReader(const Document& document, const nlohmann::json& value)
-      : document_(&document), value_(&value) {}
+  ValueReader(const Document& document, const nlohmann::json& value, std::string_view key = {})
+      : document_(&document), value_(&value), key_(key) {}
   bool is_toml() const { return document_->syntax() == Syntax::toml; }
   void require_table(std::string_view expected) const;
 
   const Document* document_;
   const nlohmann::json* value_;
+  std::string_view key_;  ///< of the value or of the list that contains it
 
  private:
   std::vector<double> numbers(std::size_t count, std::string_view expected) const;
