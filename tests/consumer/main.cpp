@@ -7,7 +7,7 @@
 int main() {
   using namespace tofsmith;
   const Camera camera = built_in_camera("indoor");
-  const DesignResult result = design(camera, with_effort({.exposures = {4}, .trials = 5000}, 0.05));
+  const DesignResult result = design(camera, {.exposures = {4}, .trials = 5000});
   const CodeSet& code = result.winner().code;
   std::cout << code.name() << ": " << result.winner().error.circular.geometric_mean_m.value
             << " m\n";

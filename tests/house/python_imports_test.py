@@ -15,7 +15,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = "tofsmith"
-COMPILED = {f"{PACKAGE}._tofsmith"}
+#: Compiled, or written while building.
+COMPILED = {f"{PACKAGE}.{module}" for module in ("_tofsmith", "_result_fields")}
 USERS = (f"{PACKAGE}.paper", f"{PACKAGE}._upload_command")
 
 
