@@ -38,9 +38,9 @@ class Export(CommandLineTest):
         rate, script = notes("keysight-arb")
         self.assertIn("1000 MHz", rate)
         self.assertIn("no SCPI script was written: modulation_1 sample_rate_hz", script)
-        self.assertEqual(notes("siglent-csv", "--rate", "1.2e9"),
-                         ["no SCPI script was written: no supported generator with two channels "
-                          "reads siglent-csv"])
+        script, duty = notes("siglent-csv", "--rate", "1.2e9")
+        self.assertIn("no supported generator with two channels reads siglent-csv", script)
+        self.assertIn("the duty of modulation 1 is 0.1625 instead of 0.1667", duty)
         self.assertEqual(notes("csv", "--rate", "3.6e9"), [])  # explicitly requested rates are not
                                                                # questioned
         self.assertEqual(notes("csv", "--samples", "120"), [])
