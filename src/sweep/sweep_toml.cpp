@@ -34,7 +34,7 @@ SettingValue setting_value_of_line(const std::string& line, std::string place) {
 
 constexpr std::int64_t max_axis_values = 1'000'000;
 
-/// Returns the names of all fields, including those of structs.
+/// Returns the names of all fields and of the fields of their structs.
 template <typename Struct>
 std::vector<std::string> field_names() {
   std::vector<std::string> names;

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Fixed values and settings with those of the axes.
+/// Fixed values and settings, and the values of the axes.
 struct Choice : ItemValues {
   std::vector<std::string> settings;
 };

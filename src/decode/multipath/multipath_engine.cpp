@@ -317,7 +317,7 @@ double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits&
   return own > 0.0 ? along / own : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Replaces light, confidence and residual by those of two returns, and the status inconsistent if
+/// Stores light, confidence and residual of two returns, and replaces the status inconsistent if
 /// they explain the pixel.
 void MultipathEngine::replace_light(const PixelGroup& group, const PairFits& fits, int lane,
                                     std::size_t at, const DecodedView& decoded) const {
