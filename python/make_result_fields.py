@@ -13,7 +13,7 @@ import sys
 import textwrap
 from typing import NamedTuple
 
-HEADER = '''# Made by make_result_fields.py of the descriptions of the results in C++. Do not edit.
+HEADER = '''# Made by make_result_fields.py from the descriptions of results in C++. Do not edit.
 """Results. Classes with methods are derived from these in other modules."""
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", 
          "estimate": "Estimate", "integer[]": "list[int]", "number[]": "list[float]",
          "text[]": "list[str]", "estimate[]": "list[Estimate]", "image": "npt.NDArray[np.float32]"}
 # Types of fields of structs in a list: one array or list per field.
-COLUMNS = {"boolean": "npt.NDArray[np.bool_]", "integer": "npt.NDArray[np.int64]", "number": "FloatArray", "estimate": "FloatArray",
-           "text": "list[str]"}
+COLUMNS = {"boolean": "npt.NDArray[np.bool_]", "integer": "npt.NDArray[np.int64]",
+           "number": "FloatArray", "estimate": "FloatArray", "text": "list[str]"}
 # Types in documentation, if different.
 WORDS = {"FloatArray": "ndarray", "npt.NDArray[np.int64]": "ndarray of int64",
          "npt.NDArray[np.float32]": "ndarray of float32"}

@@ -261,12 +261,12 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return errors[a] < errors[b]; });
-  std::map<int, std::vector<double>> kept_m;  // by number of exposures
+  std::map<int, std::vector<double>> kept_errors;  // by number of exposures
   for (const std::size_t i : order) {
-    std::vector<double>& its_m = kept_m[codes[i].exposures()];
-    if (its_m.size() >= max_of_exposures || (!its_m.empty() && errors[i] < alike * its_m.back()))
+    std::vector<double>& kept = kept_errors[codes[i].exposures()];
+    if (kept.size() >= max_of_exposures || (!kept.empty() && errors[i] < alike * kept.back()))
       continue;
-    its_m.push_back(errors[i]);
+    kept.push_back(errors[i]);
     found.codes.push_back(codes[i]);
   }
   return found;

@@ -38,7 +38,7 @@ class Document {
   struct KeyAndValue {
     Position key, value;
   };
-  /// Of all values except the root.
+  /// Places of all values except the root.
   using Positions = std::unordered_map<const nlohmann::json*, KeyAndValue>;
 
   Document(nlohmann::json root, std::string_view source_name, Syntax syntax,
@@ -196,7 +196,7 @@ class TableReader : public ValueReader {
   }
   template <HasWords Enum>
   void value(std::string_view key, Enum& target) {
-    if (const auto found = find(key)) target = static_cast<Enum>(found->word(words_of(Enum{})));
+    if (const auto found = find(key)) target = static_cast<Enum>(found->word(all_words<Enum>));
   }
 
   /// Calls `fields(TableReader&, Value&)` if the table exists.
