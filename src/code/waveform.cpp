@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -35,18 +36,33 @@ std::vector<OnInterval> unrolled(const std::vector<OnInterval>& on) {
   return pieces;
 }
 
+/// Real and imaginary parts, which the compiler vectorizes better than complex numbers.
+struct TurnSums {
+  Eigen::ArrayXd real, imaginary;
+};
+
 /// Adds sign exp(-2 pi i n t) to sum n. Each block is its first factor times the first block.
-void add_turns(double t, double sign, Eigen::ArrayXcd& sums) {
+void add_turns(double t, double sign, TurnSums& sums) {
   constexpr Eigen::Index block = 64;
   const auto turn = [&](Eigen::Index n) {
     return std::polar(1.0, -2 * pi * wrap(static_cast<double>(n) * t, 1.0));
   };
-  const Eigen::Index count = sums.size();
-  Eigen::ArrayXcd within(std::min(block, count));
-  for (Eigen::Index n = 0; n < within.size(); ++n) within[n] = turn(n);
+  const Eigen::Index count = sums.real.size();
+  std::array<double, block> real, imaginary;  // of the first block
+  for (Eigen::Index n = 0; n < std::min(block, count); ++n) {
+    const std::complex<double> first = turn(n);
+    real[static_cast<std::size_t>(n)] = first.real();
+    imaginary[static_cast<std::size_t>(n)] = first.imag();
+  }
   for (Eigen::Index first = 0; first < count; first += block) {
-    const Eigen::Index size = std::min(block, count - first);
-    sums.segment(first, size) += sign * turn(first) * within.head(size);
+    const std::size_t size = static_cast<std::size_t>(std::min(block, count - first));
+    const std::complex<double> factor = sign * turn(first);
+    double* const real_sum = sums.real.data() + first;
+    double* const imaginary_sum = sums.imaginary.data() + first;
+    for (std::size_t n = 0; n < size; ++n) {
+      real_sum[n] += factor.real() * real[n] - factor.imag() * imaginary[n];
+      imaginary_sum[n] += factor.real() * imaginary[n] + factor.imag() * real[n];
+    }
   }
 }
 
@@ -235,13 +251,13 @@ Eigen::VectorXcd Waveform::harmonics(int highest) const {
   Eigen::VectorXcd result = Eigen::VectorXcd::Zero(highest + 1);
   result[0] = mean();
   if (is_binary()) {
-    Eigen::ArrayXcd turns = Eigen::ArrayXcd::Zero(highest + 1);
+    TurnSums turns{Eigen::ArrayXd::Zero(highest + 1), Eigen::ArrayXd::Zero(highest + 1)};
     for (const OnInterval& interval : on_) {
       add_turns(interval.rise, 1.0, turns);
       add_turns(interval.fall, -1.0, turns);
     }
     for (int n = 1; n <= highest; ++n)
-      result[n] = level_ / (2 * pi * n) * std::complex<double>(turns[n].imag(), -turns[n].real());
+      result[n] = level_ / (2 * pi * n) * std::complex<double>(turns.imaginary[n], -turns.real[n]);
     return result;
   }
   if (!is_sampled()) {
