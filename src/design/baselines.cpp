@@ -63,44 +63,51 @@ int trials_per_point(const Camera& camera) {
 }
 
 /// With the light of other cameras, if the camera has operating.interference.
-double circular_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options) {
+double circular_error_m(const CodeOnCamera& on, const Camera& camera,
+                        const EvaluateOptions& options) {
   if (camera.operating.interference)
-    return interference_error(code, camera, options).circular.geometric_mean_m.value;
-  return geometric_mean_error_m(evaluate(code, camera, options),
+    return interference_error(on.code, camera, options).circular.geometric_mean_m.value;
+  return geometric_mean_error_m(evaluate(on, options),
                                 {DepthErrorKind::circular, camera.operating.statistic});
 }
 
-double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {
+double first_error_m(const CodeOnCamera& on, const Camera& camera, int trials, std::uint64_t seed) {
   const EvaluateOptions options{.trials = trials, .seed = seed, .bounds = false};
   // Circular errors with interference are the same at every origin.
   if (camera.operating.interference || !rotates(camera, {}))
-    return circular_error_m(code, camera, options);
+    return circular_error_m(on, camera, options);
   // Without smoothing, the least error of a poor code is often less by chance.
   const std::vector<double> of_rotation =
-      smoothed_over_rotations(best_rotation(code, camera, options).linear_geometric_mean_m);
+      smoothed_over_rotations(best_rotation(on, options).linear_geometric_mean_m);
   return *std::min_element(of_rotation.begin(), of_rotation.end());
 }
 
-/// Infinite for null pointers.
+using Reasons = std::vector<std::optional<std::string>>;
+
+/// Infinite for null pointers and for codes with a reason.
+/// @param reasons  why codes do not compete; receives the reason of each code without depth
 std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, const Camera& camera,
-                                   int trials, std::uint64_t seed) {
+                                   int trials, std::uint64_t seed, Reasons& reasons) {
   std::vector<double> errors_m(codes.size(), infinity);
   parallel_for_indices(codes.size(), [&](std::size_t at) {
-    if (codes[at]) errors_m[at] = first_error_m(*codes[at], camera, trials, seed);
+    if (!codes[at] || reasons[at]) return;
+    const CodeOnCamera on(*codes[at], camera);
+    reasons[at] = why_not_decodable(on.table);
+    if (!reasons[at]) errors_m[at] = first_error_m(on, camera, trials, seed);
   });
   return errors_m;
 }
 
 std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, const Camera& camera,
-                                           std::uint64_t seed) {
+                                           std::uint64_t seed, Reasons& reasons) {
   const int trials = trials_per_point(camera);
   std::vector<double> errors_m =
-      first_errors_m(codes, camera, std::max(1, trials / share_looked_at), seed);
+      first_errors_m(codes, camera, std::max(1, trials / share_looked_at), seed, reasons);
   if (errors_m.empty()) return errors_m;
   const double least = *std::min_element(errors_m.begin(), errors_m.end());
   for (std::size_t i = 0; i < codes.size(); ++i)
     if (!(errors_m[i] <= far * least)) codes[i] = nullptr;
-  const std::vector<double> by_all_m = first_errors_m(codes, camera, trials, seed);
+  const std::vector<double> by_all_m = first_errors_m(codes, camera, trials, seed, reasons);
   for (std::size_t i = 0; i < codes.size(); ++i)
     if (codes[i]) errors_m[i] = by_all_m[i];
   return errors_m;
@@ -123,10 +130,11 @@ std::vector<double> competing_errors(const Camera& camera, const ErrorsOn& error
   return with;
 }
 
+/// Returns why a code cannot compete, apart from why_not_decodable().
 std::optional<std::string> why_not_comparable(const CodeSet& code, const Camera& camera) {
   if (auto reason = why_not_playable(code, camera)) return reason;
   if (!keeps_shortest_run(code, camera)) return short_runs;
-  return why_no_depth(code, camera);
+  return std::nullopt;
 }
 
 /// Atlas entries share some waveforms.
@@ -180,18 +188,19 @@ void leave_out(DesignResult& result, const std::string& name, const std::string&
 
 double tried_error_m(const CodeSet& code, const Camera& camera, const DesignOptions& options,
                      int more) {
-  if (why_no_depth(code, camera)) return infinity;
+  const std::optional<CodeOnCamera> on = if_it_has_depth(code, camera);
+  if (!on) return infinity;
   const int trials = more * trials_per_point(camera);
   const std::uint64_t seed = search_seed(options);
   if (camera.operating.error == DepthErrorKind::linear)
-    return first_error_m(code, camera, trials, seed);
-  return circular_error_m(code, camera, {.trials = trials, .seed = seed, .bounds = false});
+    return first_error_m(*on, camera, trials, seed);
+  return circular_error_m(*on, camera, {.trials = trials, .seed = seed, .bounds = false});
 }
 
 Contenders contending_families(const std::vector<std::string>& names, const Camera& camera,
                                std::uint64_t seed) {
   Contenders found;
-  std::vector<std::optional<std::string>> reasons(names.size());
+  Reasons reasons(names.size());
   std::vector<std::optional<CodeSet>> codes(names.size());
   parallel_for_indices(names.size(), [&](std::size_t at) {
     reasons[at] = why_no_family(names[at], camera);
@@ -202,8 +211,9 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   std::vector<const CodeSet*> comparable(names.size(), nullptr);
   for (std::size_t i = 0; i < names.size(); ++i)
     if (!reasons[i]) comparable[i] = &*codes[i];
-  const std::vector<double> errors = competing_errors(
-      camera, [&](const Camera& on) { return errors_of_contenders_m(comparable, on, seed); });
+  const std::vector<double> errors = competing_errors(camera, [&](const Camera& on) {
+    return errors_of_contenders_m(comparable, on, seed, reasons);
+  });
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (reasons[i])
@@ -238,7 +248,7 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
     return found;
   const std::vector<CodeSet> codes =
       nearest_atlas_codes(code_atlas(), camera, options.exposures, options.atlas_cameras);
-  std::vector<std::optional<std::string>> reasons(codes.size());
+  Reasons reasons(codes.size());
   std::vector<const CodeSet*> comparable(codes.size(), nullptr);
   parallel_for_indices(codes.size(), [&](std::size_t at) {
     if (first_like(codes, at) != at) return;
@@ -247,7 +257,7 @@ Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& opt
   });
   std::vector<double> errors = competing_errors(camera, [&](const Camera& on) {
     return first_errors_m(comparable, on, trials.value_or(trials_per_point(on)),
-                          search_seed(options));
+                          search_seed(options), reasons);
   });
   for (std::size_t i = 0; i < codes.size(); ++i) errors[i] = errors[first_like(codes, i)];
   const auto note = [](const std::string& name, std::vector<std::string>& names) {

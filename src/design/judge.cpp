@@ -273,8 +273,14 @@ void require_judgeable(const Camera& camera, const DesignOptions& options) {
 
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera) {
   if (auto reason = why_not_playable(code, camera)) return reason;
-  const Camera judged = judged_camera(camera);
-  return why_not_decodable(make_decoding_table(ForwardModel(code, judged), judged));
+  return why_not_decodable(CodeOnCamera(code, camera).table);
+}
+
+std::optional<CodeOnCamera> if_it_has_depth(const CodeSet& code, const Camera& camera) {
+  if (why_not_playable(code, camera)) return std::nullopt;
+  std::optional<CodeOnCamera> on(std::in_place, code, camera);
+  if (why_not_decodable(on->table)) on.reset();
+  return on;
 }
 
 void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "simulate/shared/code_on_camera.hpp"
 #include "tofsmith/design/candidate.hpp"
 #include "tofsmith/design/design.hpp"
 
@@ -25,6 +26,9 @@ bool rotates(const Camera& camera, const DesignOptions& options);
 
 /// Returns why the camera cannot measure depth with a code, or nothing.
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
+
+/// Returns nothing if why_no_depth() has a reason. `code` must outlive the result.
+std::optional<CodeOnCamera> if_it_has_depth(const CodeSet& code, const Camera& camera);
 
 /// @throws std::invalid_argument for invalid options or camera, or robust codes with
 ///   operating.multipath or operating.interference

@@ -31,9 +31,11 @@ struct BestCode {
 using Codes = std::vector<const CodeSet*>;
 
 CodeSet at_best_origin(const CodeSet& code, const Camera& camera, const DesignOptions& options) {
-  if (!rotates(camera, options) || why_no_depth(code, camera)) return code;
+  if (!rotates(camera, options)) return code;
+  const std::optional<CodeOnCamera> on = if_it_has_depth(code, camera);
+  if (!on) return code;
   const EvaluateOptions search{.trials = options.trials, .seed = search_seed(options)};
-  return code.rotated(best_rotation(code, camera, search).rotation_bin);
+  return code.rotated(best_rotation(*on, search).rotation_bin);
 }
 
 /// All codes found; each is evaluated on every modified camera.
@@ -93,7 +95,7 @@ class CodePool {
     BestCode best;
     for (std::size_t i = 0; i < codes.size(); ++i) {
       if (!(first[i] <= 1.1 * least_m)) continue;
-      const double error_m = error_of(*codes[i], camera, options_.trials);
+      const double error_m = error_of({*codes[i], camera}, camera, options_.trials);
       if (error_m < best.error_m) best = {error_m, codes[i]};
     }
     return best;
@@ -134,15 +136,15 @@ class CodePool {
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
     parallel_for_indices(codes.size(), [&](std::size_t at) {
-      if (!why_no_depth(*codes[at], camera))
-        errors_m[at] = error_of(*codes[at], camera, first_trials());
+      if (const std::optional<CodeOnCamera> on = if_it_has_depth(*codes[at], camera))
+        errors_m[at] = error_of(*on, camera, first_trials());
     });
     return errors_m;
   }
 
-  double error_of(const CodeSet& code, const Camera& camera, int trials) const {
+  double error_of(const CodeOnCamera& on, const Camera& camera, int trials) const {
     const EvaluateOptions judging{.trials = trials, .seed = options_.seed + 2, .bounds = false};
-    return geometric_mean_error_m(evaluate(code, camera, judging), camera.operating.measure());
+    return geometric_mean_error_m(evaluate(on, judging), camera.operating.measure());
   }
 
   RequirementOptions options_;

@@ -10,11 +10,13 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "camera/shared/actual_code.hpp"
 #include "simulate/depth_trials.hpp"
 #include "simulate/pixel_trials.hpp"
 #include "simulate/shared/camera_bounds.hpp"
+#include "simulate/shared/code_on_camera.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 
@@ -39,6 +41,29 @@ Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& l
 
 void EvaluateOptions::validate() const { check_fields(*this); }
 
+CodeOnCamera::CodeOnCamera(const CodeSet& playable, const Camera& given)
+    : code(playable),
+      camera(judged_camera(given)),
+      model(code, camera),
+      table(make_decoding_table(model, camera)) {}
+
+namespace {
+
+DepthErrorReport errors_without_bounds(const CodeOnCamera& on, const EvaluateOptions& options,
+                                       const Progress& progress) {
+  const DepthTrials trials(on.model, on.camera, options, on.table);
+  return trial_errors(trials, on.code, on.camera, options, progress);
+}
+
+}  // namespace
+
+DepthErrorReport evaluate(const CodeOnCamera& on, const EvaluateOptions& options,
+                          const Progress& progress) {
+  DepthErrorReport result = errors_without_bounds(on, options, progress);
+  report(progress, 1.0, "depth error");
+  return result;
+}
+
 const std::vector<CameraBounds::Level>& CameraBounds::of(const CodeSet& code) {
   const auto [found, is_new] =
       levels_.try_emplace(std::pair(code.exposures(), code.exposure_shares()));
@@ -53,19 +78,15 @@ const std::vector<CameraBounds::Level>& CameraBounds::of(const CodeSet& code) {
   return found->second;
 }
 
-DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
+DepthErrorReport evaluate(const CodeSet& code, const Camera& given, const EvaluateOptions& options,
                           CameraBounds& bounds, const Progress& progress) {
-  const Camera camera = judged_camera(on);
-  const ForwardModel model(code, camera);
-  const DepthTrials trials(model, camera, options);
-  DepthErrorReport result = trial_errors(trials, code, camera, options, progress);
-  if (!options.bounds) {
-    report(progress, 1.0, "depth error");
-    return result;
-  }
-  const CramerRaoBound cramer_rao(model, camera);
+  const CodeOnCamera on(code, given);
+  if (!options.bounds) return evaluate(on, options, progress);
+  DepthErrorReport result = errors_without_bounds(on, options, progress);
+  const Camera& camera = on.camera;
+  const CramerRaoBound cramer_rao(on.model, camera);
   std::optional<HistogramBound> histogram;
-  if (model.has_rows()) histogram.emplace(model, camera);
+  if (on.model.has_rows()) histogram.emplace(on.model, camera);
   const std::vector<CameraBounds::Level>& levels = bounds.of(code);
   for (std::size_t i = 0; i < result.points.size(); ++i) {
     PointDepthError& error = result.points[i];
@@ -116,14 +137,21 @@ std::vector<SumsByRotation> sums_by_rotation(const DepthTrials& trials,
 
 }  // namespace
 
-BestRotation best_rotation(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
+BestRotation best_rotation(const CodeSet& code, const Camera& camera,
+                           const EvaluateOptions& options, const Progress& progress) {
+  return best_rotation(CodeOnCamera(code, camera), options, progress);
+}
+
+BestRotation best_rotation(const CodeOnCamera& on, const EvaluateOptions& options,
                            const Progress& progress) {
-  Camera camera = judged_camera(on);
-  const DepthPrior prior(camera);
-  camera.operating.depths.reset();  // uniform depths serve all rotations
+  const DepthPrior prior(on.camera);
+  // Uniform depths serve all rotations.
+  Camera camera = on.camera;
+  DecodingTable table = on.table;
+  camera.operating.depths.reset();
   camera.operating.working_distance_m.reset();
-  const ForwardModel model(code, camera);
-  const DepthTrials trials(model, camera, options);
+  table.working_distance_m.reset();
+  const DepthTrials trials(on.model, camera, options, std::move(table));
   const std::vector<TrialRound> rounds = trials.first_rounds();
   const int samples = trials.samples();
   const std::vector<SumsByRotation> of_point =
@@ -151,7 +179,7 @@ BestRotation best_rotation(const CodeSet& code, const Camera& on, const Evaluate
   // After a rotation, rounding errors may remove a narrow pulse on the points of the generator.
   for (;;) {
     best.rotation_bin = best_of_rotations(choice);
-    if (best.rotation_bin == 0 || !why_not_playable(code.rotated(best.rotation_bin), camera))
+    if (best.rotation_bin == 0 || !why_not_playable(on.code.rotated(best.rotation_bin), camera))
       return best;
     choice[static_cast<std::size_t>(best.rotation_bin)] = std::numeric_limits<double>::infinity();
   }
