@@ -122,7 +122,11 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
   const ProgressParts parts(progress,
                             {50, later ? 10.0 : 50.0, later ? 40.0 : 0.0, has_others ? 50.0 : 0.0});
   if (rotates(camera, options)) {
+    constexpr std::int64_t trials_of_all_points = 125000;
+    const auto points = static_cast<std::int64_t>(camera.operating.points().size());
     EvaluateOptions search = judging;
+    search.trials =
+        std::min(judging.trials, std::max(judging.trials / 4, trials_of_all_points / points));
     search.seed = search_seed(options);
     const int moved_bin = best_rotation(candidate.code, camera, search, parts[0]).rotation_bin;
     candidate.code = candidate.code.rotated(moved_bin);

@@ -20,11 +20,11 @@ struct OptimizeOptions {
   int steps_per_start = 80;
   int hops = 24;
   int steps_per_hop = 200;
-  int patience = 20;
+  int patience = 18;
   int refined = 6;
   int refinement_steps = 200;
   int trials_per_step = 200;
-  int pool_trials = 80000;
+  int pool_trials = 40000;
   bool polish = true;
   int polish_steps = 250;
   std::uint64_t seed = 1;
@@ -58,9 +58,10 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
             Help{"gradient steps per refined code"}),
       Field("trials_per_step", o.trials_per_step, at_least(8),
             Help{"noisy measurements per gradient, over all light levels"}),
-      Field("pool_trials", o.pool_trials, at_least(1000),
-            Help{"trials that rank codes while searching, over all light levels; codes that are "
-                 "clearly worse than the best are ranked by a quarter of them"}),
+      Field(
+          "pool_trials", o.pool_trials, at_least(1000),
+          Help{"trials that rank codes while searching, over all light levels; finished codes are "
+               "ranked by 2 and the best two by 4 times as many"}),
       Field("polish", o.polish, Help{"move the switching times of the result continuously"}),
       Field("polish_steps", o.polish_steps, at_least(0), Help{"gradient steps of polish"}),
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of every random choice"}),

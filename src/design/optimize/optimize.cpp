@@ -26,7 +26,8 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::uint64_t polish_key = 103, judging_key = 104, split_key = 105, precise_key = 106;
+constexpr std::uint64_t polish_key = 103, judging_key = 104, split_key = 105, precise_key = 106,
+                        best_judging_key = 107;
 
 bool separates_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
@@ -79,13 +80,14 @@ SearchRecord record_of(const OptimizePool& pool) {
           .account = fmt::format("{} gradient steps", pool.steps())};
 }
 
-/// Has more trials than the pool, and trials that did not select the codes.
-CodeJudge final_judge(const DesignProblem& problem, const OptimizeOptions& options) {
-  constexpr int more = 4;
-  OptimizeOptions precise = options;
-  precise.pool_trials *= more;
-  return {problem, trials_per_level(problem, precise), options.seed, judging_key};
-}
+/// Judges finished codes by trials that did not select them.
+struct FinalJudges {
+  FinalJudges(const DesignProblem& problem, const OptimizeOptions& options)
+      : of_all(problem, 2 * trials_per_level(problem, options), options.seed, judging_key),
+        of_best(problem, 4 * trials_per_level(problem, options), options.seed, best_judging_key) {}
+
+  CodeJudge of_all, of_best;
+};
 
 struct FinishedCode {
   SwitchedCode code;
@@ -93,17 +95,18 @@ struct FinishedCode {
   std::string start;
 };
 
-void sort_by_error(std::vector<FinishedCode>& codes) {
+void sort_by_error(std::span<FinishedCode> codes) {
   std::stable_sort(codes.begin(), codes.end(), [](const FinishedCode& a, const FinishedCode& b) {
     return a.log_error_bin < b.log_error_bin;
   });
 }
 
 /// Polishes the edges of all entries. Then polishes the two best results again, with less noise,
-/// unless another number of exposures is better.
+/// and judges them by more trials, unless another number of exposures is better.
 /// @param key     of the random numbers
 /// @param before  number of codes from earlier stages, for random numbers
-std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const CodeJudge& judge,
+/// @return best first; the errors of the best two are by `judges.of_best`, unless the search lost
+std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const FinalJudges& judges,
                                          const std::vector<PoolEntry>& entries, OptimizePool& pool,
                                          const OptimizeOptions& options, std::uint64_t key,
                                          std::uint64_t before, const Progress& progress) {
@@ -111,29 +114,35 @@ std::vector<FinishedCode> finished_codes(const DesignProblem& problem, const Cod
   constexpr int more_trials = 4;
   const Sharpness sharpness = final_sharpness(problem);
   const int polish_steps = options.polish ? options.polish_steps : 0;
-  const bool polishes_again = polish_steps > 0 && !pool.lost_to_rival();
-  const std::size_t again = polishes_again ? std::min(polished_again, entries.size()) : 0;
+  const std::size_t again = pool.lost_to_rival() ? 0 : std::min(polished_again, entries.size());
   std::vector<FinishedCode> finished(entries.size());
   SharedProgress shared(progress, static_cast<double>(entries.size() + again) * polish_steps,
                         "edges");
-  const auto polish = [&](FinishedCode& code, int trials, std::uint64_t first_key, std::size_t i) {
-    code.code = polish_edges(problem, std::move(code.code), polish_steps, trials, options.seed,
-                             combine_keys(first_key, before + i), &shared);
-    code.log_error_bin = judge.score(sampled_on(problem.space, code.code)).log_error_bin;
+  const auto polish = [&](SwitchedCode& code, int trials, std::uint64_t first_key, std::size_t i) {
+    code = polish_edges(problem, std::move(code), polish_steps, trials, options.seed,
+                        combine_keys(first_key, before + i), &shared);
+  };
+  const auto log_error = [&](const CodeJudge& judge, const SwitchedCode& code) {
+    return judge.score(sampled_on(problem.space, code)).log_error_bin;
   };
   parallel_for_indices(entries.size(), [&](std::size_t i) {
-    const PoolEntry& entry = entries[i];
-    finished[i].code = binarized(problem, render(problem.space, entry.parameters, sharpness));
-    finished[i].start = entry.start;
-    polish(finished[i], options.trials_per_step, key, i);
+    FinishedCode& its = finished[i];
+    its.start = entries[i].start;
+    its.code = binarized(problem, render(problem.space, entries[i].parameters, sharpness));
+    polish(its.code, options.trials_per_step, key, i);
+    its.log_error_bin = log_error(judges.of_all, its.code);
   });
   sort_by_error(finished);
   parallel_for_indices(again, [&](std::size_t i) {
-    FinishedCode precise = finished[i];
-    polish(precise, more_trials * options.trials_per_step, combine_keys(precise_key, key), i);
-    if (precise.log_error_bin < finished[i].log_error_bin) finished[i] = std::move(precise);
+    FinishedCode& its = finished[i];
+    its.log_error_bin = log_error(judges.of_best, its.code);
+    if (polish_steps == 0) return;
+    FinishedCode precise = its;
+    polish(precise.code, more_trials * options.trials_per_step, combine_keys(precise_key, key), i);
+    precise.log_error_bin = log_error(judges.of_best, precise.code);
+    if (precise.log_error_bin < its.log_error_bin) its = std::move(precise);
   });
-  sort_by_error(finished);
+  sort_by_error(std::span(finished).first(again));
   pool.add_steps(static_cast<std::int64_t>(entries.size() + again) * polish_steps);
   return finished;
 }
@@ -187,7 +196,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   // Each stage descends from many codes, from copies of the best codes, and again from the best
   // codes, which become feasible.
   OptimizePool pool(problem, options, also, camera.range_m() / problem.space.samples());
-  const CodeJudge judge = final_judge(problem, options);
+  const FinalJudges judges(problem, options);
   std::vector<PoolStage> stages = stages_of(options);
   std::vector<double> weights;
   for (const PoolStage& stage : stages) weights.push_back(stage.starts);
@@ -209,7 +218,7 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
       pool.refine(stage, parts[2]);
     std::vector<PoolEntry> entries =
         entries_to_finish(problem, pool, camera, stage, final_sharpness(problem));
-    std::vector<FinishedCode> finished = finished_codes(problem, judge, entries, pool, options,
+    std::vector<FinishedCode> finished = finished_codes(problem, judges, entries, pool, options,
                                                         polish_key, finished_before, parts[3]);
     finished_before += finished.size();
     const double least = finished.front().log_error_bin;
@@ -223,10 +232,9 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
     std::vector<PoolEntry> split = pool.with_free_shares(stage, parts[4]);
     std::move(split.begin(), split.end(), std::back_inserter(entries));
     finished =
-        finished_codes(problem, judge, entries, pool, options, split_key, split_before, parts[5]);
+        finished_codes(problem, judges, entries, pool, options, split_key, split_before, parts[5]);
     split_before += finished.size();
-    std::erase_if(finished, [&](const FinishedCode& its) { return !(its.log_error_bin < least); });
-    if (!finished.empty()) add(std::move(finished));
+    if (finished.front().log_error_bin < least) add(std::move(finished));
   }
 
   const double seconds =

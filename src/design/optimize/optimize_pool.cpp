@@ -9,7 +9,6 @@
 
 #include "simulate/shared/error_by_rotation.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
@@ -191,11 +190,9 @@ void rotate_gates(const WaveformSpace& space, int exposure, int cells,
 
 enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts, splitting };
 constexpr std::size_t together = 10;  // descents between sorts of the pool
-constexpr std::size_t hops_together = 5;
+constexpr std::size_t hops_together = 6;
 constexpr std::size_t max_pool = 24;
 constexpr double refinement_softness = 1.5;
-/// Codes whose log error exceeds the smallest by this value are only judged by few trials.
-constexpr double contending_log_ratio = 0.05;
 
 std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
   return combine_keys(phase, static_cast<std::uint64_t>(item));
@@ -354,8 +351,6 @@ OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& 
     : problem_(&problem),
       options_(options),
       bin_m_(bin_m),
-      quick_judge_(problem, trials_per_level(problem, options) / 4, options.seed,
-                   work_item(Phase::judging, 1)),
       judge_(problem, trials_per_level(problem, options), options.seed,
              work_item(Phase::judging, 0)),
       codes_(fitting_codes(problem.space, also)) {}
@@ -379,15 +374,12 @@ void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, doubl
                                  .trials_per_step = options_.trials_per_step,
                                  .rate = rate,
                                  .final_sharpness = final_sharpness(*problem_)};
-  const double contending =
-      entries_.empty() ? infinity : entries_.front().score.log_error_bin + contending_log_ratio;
   parallel_for_indices(entries.size(), [&](std::size_t at) {
     PoolEntry& entry = entries[at];
     entry.parameters = descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
                                work_item(phase, first_item + at), &progress);
     const SampledCode code = render(problem_->space, entry.parameters, schedule.final_sharpness);
-    entry.score = quick_judge_.score(code);
-    if (entry.score.log_error_bin < contending) entry.score = judge_.score(code);
+    entry.score = judge_.score(code);
     entry.parameters = rotated(problem_->space, entry.parameters, entry.score.rotation_bin);
     entry.score.rotation_bin = 0;
   });
@@ -430,8 +422,9 @@ void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) 
 }
 
 void OptimizePool::run_hops(const PoolStage& stage, double rival_m, const Progress& progress) {
-  // The rest of a search (hops, refinement and polish) reduces errors by up to 10 %.
-  constexpr double first_margin = 0.12, last_margin = 0.02;
+  // Hops, refinement and polish together reduce errors by up to 15 %; the part after the continued
+  // starts by up to 10 %.
+  constexpr double start_margin = 0.2, first_margin = 0.12, last_margin = 0.02;
   const auto count = static_cast<std::size_t>(stage.hops);
   int without_gain = 0;
   ended_early_ = lost_to_rival_ = false;
@@ -440,9 +433,10 @@ void OptimizePool::run_hops(const PoolStage& stage, double rival_m, const Progre
   for (std::size_t first = hops_done_; first < count; first += hops_together) {
     const double remaining =
         static_cast<double>(count - first) / static_cast<double>(count - hops_done_);
-    const double margin = last_margin + remaining * (first_margin - last_margin);
-    lost_to_rival_ = first - hops_done_ >= continued_.size() &&
-                     error_m(entries_.front().score.log_error_bin) > (1.0 + margin) * rival_m;
+    const double margin = first - hops_done_ < continued_.size()
+                              ? start_margin
+                              : last_margin + remaining * (first_margin - last_margin);
+    lost_to_rival_ = error_m(entries_.front().score.log_error_bin) > (1.0 + margin) * rival_m;
     if (lost_to_rival_) break;
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {

@@ -130,7 +130,6 @@ class OptimizePool {
   const DesignProblem* problem_;
   OptimizeOptions options_;
   double bin_m_;
-  CodeJudge quick_judge_;  ///< few trials
   CodeJudge judge_;
   std::vector<CodeSet> codes_;           ///< starts
   std::vector<OptimizeStart> mixtures_;  ///< starts after the codes
