@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-
 #include "asked_figures.hpp"
 #include "decode_frame.hpp"
 #include "reference_bins.hpp"

@@ -66,8 +66,7 @@ nlohmann::ordered_json default_of_field(const Value& value) {
 template <typename Single>
 std::vector<std::string> words_of_field() {
   if constexpr (HasWords<Single>) {
-    const auto words = words_of(Single{});
-    return {words.begin(), words.end()};
+    return {all_words<Single>.begin(), all_words<Single>.end()};
   } else {
     return {};
   }

@@ -136,7 +136,7 @@ int main() {
       {"results", results()},
       {"planes", planes},
       {"statuses",
-       {{"PixelStatus", words_of(PixelStatus())}, {"ReturnStatus", words_of(ReturnStatus())}}},
+       {{"PixelStatus", all_words<PixelStatus>}, {"ReturnStatus", all_words<ReturnStatus>}}},
       {"plane_synonyms", synonyms}};
   return std::puts(all.dump().c_str()) < 0 ? 1 : 0;
 }

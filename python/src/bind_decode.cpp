@@ -264,8 +264,8 @@ void bind_decode(py::module_& module) {
       .def("decode_recording", &decode_a_recording)
       .def("decode_stream", &decode_a_stream)
       .def("decode_depth_bins", &decode_depth_bins);
-  module.def("decode_methods", [] { return words_of(DecodeMethod{}); });
-  module.def("mixed_pixels", [] { return words_of(MixedPixels{}); });
+  module.def("decode_methods", [] { return all_words<DecodeMethod>; });
+  module.def("mixed_pixels", [] { return all_words<MixedPixels>; });
 }
 
 }  // namespace tofsmith::python

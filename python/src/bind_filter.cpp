@@ -176,7 +176,7 @@ void bind_filter(py::module_& module) {
       .def("forget", &TimeFilter::forget);
   module.def("merge_exposures", &merge_frames);
   module.def("without_stray_light", &without_stray_light);
-  module.def("filter_strengths", [] { return words_of(FilterStrength{}); });
+  module.def("filter_strengths", [] { return all_words<FilterStrength>; });
 }
 
 }  // namespace tofsmith::python

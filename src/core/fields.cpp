@@ -4,9 +4,9 @@
 #include "tofsmith/core/range.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <variant>
@@ -16,18 +16,6 @@
 #include "tofsmith/core/field_visitor.hpp"
 
 namespace tofsmith {
-
-std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
-                          std::string_view word) {
-  const auto at = std::find(words.begin(), words.end(), word);
-  if (at == words.end()) {
-    const std::string others = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, ", "));
-    reject(field, word,
-           others.empty() ? fmt::format("must be {}", words.back())
-                          : fmt::format("must be {} or {}", others, words.back()));
-  }
-  return static_cast<std::size_t>(at - words.begin());
-}
 
 std::string full_help(std::string_view unit, std::string_view help, std::string_view only_with,
                       std::string_view if_absent) {

@@ -21,7 +21,7 @@ template <typename Value>
 std::string codes_text(const Image<Value>& /*plane*/) {
   std::string text;
   if constexpr (std::is_enum_v<Value>)
-    for (int code = 0; const std::string_view word : words_of(Value{}))
+    for (int code = 0; const std::string_view word : all_words<Value>)
       text += fmt::format("{}{} {}", text.empty() ? ": " : ", ", code++, word);
   return text;
 }

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdint>
 
 #include "field_list.hpp"
@@ -16,9 +15,7 @@ namespace tofsmith {
 
 // Outside the unnamed namespace, like options: fields_of() is found by its argument.
 enum class Heat { top, bottom, both };
-constexpr std::array<std::string_view, 3> words_of(Heat /*any*/) {
-  return {"top", "bottom", "both"};
-}
+constexpr auto words_of(Heat /*any*/) { return word_list("top", "bottom", "both"); }
 
 struct Oven {
   int trays = 4;

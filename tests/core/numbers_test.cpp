@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -189,12 +188,10 @@ TEST(Range, ContainsTheNumbersOfItsText) {
 }
 
 enum class Fruit { apple, pear, plum };
-constexpr std::array<std::string_view, 3> words_of(Fruit /*any*/) {
-  return {"apple", "pear", "plum"};
-}
+constexpr auto words_of(Fruit /*any*/) { return word_list("apple", "pear", "plum"); }
 
 enum class Nut { hazel };
-constexpr std::array<std::string_view, 1> words_of(Nut /*any*/) { return {"hazel"}; }
+constexpr auto words_of(Nut /*any*/) { return word_list("hazel"); }
 
 TEST(WordsOfEnumerations, EveryValueIsReadBackFromItsWord) {
   for (const Fruit fruit : {Fruit::apple, Fruit::pear, Fruit::plum})

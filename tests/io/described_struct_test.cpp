@@ -21,9 +21,7 @@ inline void describe(FieldVisitor& fields, Fan& fan) {
 }
 
 enum class Cooling { passive, forced };
-constexpr std::array<std::string_view, 2> words_of(Cooling /*any*/) {
-  return {"passive", "forced"};
-}
+constexpr auto words_of(Cooling /*any*/) { return word_list("passive", "forced"); }
 
 struct Housing {
   double depth_m = 0.1;

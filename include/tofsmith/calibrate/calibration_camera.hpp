@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <string_view>
 
@@ -32,9 +31,7 @@ enum class ResponseArm {
   system,  ///< both arms together, stored as the response of the light
 };
 
-constexpr std::array<std::string_view, 3> words_of(ResponseArm /*any*/) {
-  return {"light", "sensor", "system"};
-}
+constexpr auto words_of(ResponseArm /*any*/) { return word_list("light", "sensor", "system"); }
 /// @throws InvalidArgument for other words
 inline ResponseArm parse_response_arm(std::string_view word) {
   return parse_word<ResponseArm>("arm", word);

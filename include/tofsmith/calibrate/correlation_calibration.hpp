@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -35,8 +34,8 @@ enum class DelayUnit {
   bin,
   period,
 };
-constexpr std::array<std::string_view, 8> words_of(DelayUnit /*any*/) {
-  return {"s", "ms", "us", "ns", "ps", "m", "bin", "period"};
+constexpr auto words_of(DelayUnit /*any*/) {
+  return word_list("s", "ms", "us", "ns", "ps", "m", "bin", "period");
 }
 
 /// Frames of a flat target at known delays, in recording order.

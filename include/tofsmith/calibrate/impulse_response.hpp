@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -57,9 +56,7 @@ enum class Excitation {
   pulse,      ///< much shorter than the response
   step,       ///< switching on or off; the response is the derivative of the record
 };
-constexpr std::array<std::string_view, 3> words_of(Excitation /*any*/) {
-  return {"auto", "pulse", "step"};
-}
+constexpr auto words_of(Excitation /*any*/) { return word_list("auto", "pulse", "step"); }
 
 /// Options of calibrate_impulse_response().
 struct ResponseCalibrationOptions {

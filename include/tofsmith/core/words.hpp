@@ -39,8 +39,16 @@ inline constexpr auto all_values = [] {
 
 /// Returns the index of a word.
 /// @throws InvalidArgument "field = word; must be a, b or c"
-std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
-                          std::string_view word);
+inline std::size_t index_of_word(std::string_view field, std::span<const std::string_view> words,
+                                 std::string_view word) {
+  std::string rule = "must be ";
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == word) return i;
+    if (i > 0) rule += i + 1 < words.size() ? ", " : " or ";
+    rule += words[i];
+  }
+  reject(field, word, rule);
+}
 
 /// Returns the usual word for a synonym, and other text unchanged. Enumerations with synonyms
 /// overload it.

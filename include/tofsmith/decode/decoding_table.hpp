@@ -225,9 +225,7 @@ enum class MeasuredAmbient {
           ///< without light
   none,   ///< zero: columns are differences
 };
-constexpr std::array<std::string_view, 3> words_of(MeasuredAmbient /*any*/) {
-  return {"equal", "mean", "none"};
-}
+constexpr auto words_of(MeasuredAmbient /*any*/) { return word_list("equal", "mean", "none"); }
 /// @throws InvalidArgument for other words
 inline MeasuredAmbient parse_measured_ambient(std::string_view name) {
   return parse_word<MeasuredAmbient>("ambient", name);

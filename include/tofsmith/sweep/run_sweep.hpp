@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -41,9 +40,7 @@ enum class SweepCombination {
   product,  ///< all combinations; the last axis varies fastest
   zip,      ///< by index; equal lengths required
 };
-constexpr std::array<std::string_view, 2> words_of(SweepCombination /*any*/) {
-  return {"product", "zip"};
-}
+constexpr auto words_of(SweepCombination /*any*/) { return word_list("product", "zip"); }
 
 /// Definition of a sweep, a list of depth errors to compute; see docs/sweeps.md.
 struct SweepSpec {

@@ -8,6 +8,8 @@
 #define TOFSMITH_DECODE_FILTER_ROW_PAIRS_INL_HPP
 #endif
 
+#include <array>
+
 #include "decode/filter/filter_kernel.hpp"
 #include "decode/filter/pair_weight-inl.hpp"
 

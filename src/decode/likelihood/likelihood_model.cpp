@@ -3,6 +3,7 @@
 #include "decode/likelihood/likelihood_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 

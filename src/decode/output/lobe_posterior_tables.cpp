@@ -3,6 +3,7 @@
 #include "decode/output/lobe_posterior.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>

@@ -138,7 +138,7 @@ constexpr const char* array_of_kind = "depth_is_z";
 constexpr const char* exr_attribute_of_kind = "depthKind";
 
 std::optional<DepthKind> kind_of_word(std::string_view word) {
-  constexpr auto words = words_of(DepthKind{});
+  const auto& words = all_words<DepthKind>;
   const auto found = std::ranges::find(words, word);
   if (found == words.end()) return std::nullopt;
   return static_cast<DepthKind>(found - words.begin());
