@@ -8,7 +8,6 @@
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "commands.hpp"
@@ -93,33 +92,12 @@ std::vector<std::vector<std::string>> evaluation_rows(const std::vector<Evaluate
   return rows;
 }
 
-/// Calls `add` with the name and the value of each column of an operating point, with an empty
-/// value if there is no bound.
-template <typename Add>
-void add_columns(const PointDepthError& point, const Add& add) {
-  const auto number = [](double value) { return fmt::format("{:.9g}", value); };
-  for_each_field(point, [&](const auto& field) {
-    using Value = std::remove_cvref_t<decltype(field.value)>;
-    if constexpr (std::is_same_v<Value, OperatingPoint>) {
-      for_each_field(field.value, [&](const auto& light) { add(light.name, number(light.value)); });
-    } else if constexpr (std::is_same_v<Value, Estimate>) {
-      add(field.name, number(field.value.value));
-      if (!field.is(FieldMark::without_error))
-        add(error_name(field.name), number(field.value.standard_error));
-    } else if constexpr (std::is_same_v<Value, double>) {
-      const bool is_empty =
-          field.is(FieldMark::may_be_null) && std::isnan(bound_or_nan(field.value));
-      add(field.name, is_empty ? "" : number(field.value));
-    }
-  });
-}
-
 /// Returns the same as CSV, in metres.
 std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
   const bool compared = is_compared_with_zncc(codes);
   const bool has_others = is_evaluated_with_interference(codes);
   std::string text = "code";
-  add_columns({}, [&](std::string_view name, std::string_view) { (text += ',') += name; });
+  for (const PointColumn& column : point_columns({})) text += fmt::format(",{}", column.name);
   if (compared) text += ",zncc_linear_mde_m,zncc_circular_mde_m";
   if (has_others)
     text +=
@@ -130,8 +108,8 @@ std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
   for (const EvaluatedCode& code : codes)
     for (std::size_t i = 0; i < code.error.points.size(); ++i) {
       text += csv_field(code.error.code);
-      add_columns(code.error.points[i],
-                  [&](std::string_view, std::string_view value) { (text += ',') += value; });
+      for (const PointColumn& column : point_columns(code.error.points[i]))
+        text += std::isnan(column.value) ? "," : fmt::format(",{:.9g}", column.value);
       if (compared)
         text += fmt::format(",{:.9g},{:.9g}", code.zncc_error->points[i].linear_mde_m.value,
                             code.zncc_error->points[i].circular_mde_m.value);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "camera/shared/actual_code.hpp"
@@ -28,6 +29,11 @@ template <typename Bound>
 double bound_mae_m(const Bound& bound, const Camera& camera, const OperatingPoint& point) {
   if (camera.operating.uniform_albedo) return bound.mae_uniform_albedo_m(point);
   return bound.mae_m({camera.operating.albedo * point.signal_e_per_s, point.ambient_e_per_s});
+}
+
+/// Replaces 0, which means no bound, by NaN.
+double bound_or_nan(double bound_m) {
+  return bound_m == 0.0 ? std::numeric_limits<double>::quiet_NaN() : bound_m;
 }
 
 }  // namespace
@@ -62,6 +68,26 @@ DepthErrorReport evaluate(const CodeOnCamera& on, const EvaluateOptions& options
   DepthErrorReport result = errors_without_bounds(on, options, progress);
   report(progress, 1.0, "depth error");
   return result;
+}
+
+std::vector<PointColumn> point_columns(const PointDepthError& point) {
+  std::vector<PointColumn> columns;
+  for_each_field(point, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (std::is_same_v<Value, OperatingPoint>) {
+      for_each_field(field.value, [&](const auto& light) {
+        columns.push_back({light.name, light.value});
+      });
+    } else if constexpr (std::is_same_v<Value, Estimate>) {
+      columns.push_back({field.name, field.value.value});
+      if (!field.is(FieldMark::without_error))
+        columns.push_back({error_name(field.name), field.value.standard_error});
+    } else if constexpr (std::is_same_v<Value, double>) {
+      const bool may_be_null = field.is(FieldMark::may_be_null);
+      columns.push_back({field.name, may_be_null ? bound_or_nan(field.value) : field.value});
+    }
+  });
+  return columns;
 }
 
 const std::vector<CameraBounds::Level>& CameraBounds::of(const CodeSet& code) {

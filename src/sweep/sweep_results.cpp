@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -21,31 +20,6 @@ namespace tofsmith {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct PointColumn {
-  const char* name;
-  double (*of)(const PointDepthError&);
-};
-
-constexpr std::array<PointColumn, 14> point_columns = {{
-    {"signal_e_per_s", [](const PointDepthError& p) { return p.point.signal_e_per_s; }},
-    {"ambient_e_per_s", [](const PointDepthError& p) { return p.point.ambient_e_per_s; }},
-    {"linear_mde_m", [](const PointDepthError& p) { return p.linear_mde_m.value; }},
-    {"linear_se_m", [](const PointDepthError& p) { return p.linear_mde_m.standard_error; }},
-    {"circular_mde_m", [](const PointDepthError& p) { return p.circular_mde_m.value; }},
-    {"circular_se_m", [](const PointDepthError& p) { return p.circular_mde_m.standard_error; }},
-    {"linear_rmse_m", [](const PointDepthError& p) { return p.linear_rmse_m.value; }},
-    {"linear_rmse_se_m", [](const PointDepthError& p) { return p.linear_rmse_m.standard_error; }},
-    {"circular_rmse_m", [](const PointDepthError& p) { return p.circular_rmse_m.value; }},
-    {"circular_rmse_se_m",
-     [](const PointDepthError& p) { return p.circular_rmse_m.standard_error; }},
-    {"outlier_rate", [](const PointDepthError& p) { return p.outlier_rate.value; }},
-    {"cramer_rao_mae_m", [](const PointDepthError& p) { return p.cramer_rao_mae_m; }},
-    {"receiver_bound_mae_m",
-     [](const PointDepthError& p) { return bound_or_nan(p.receiver_bound_mae_m); }},
-    {"direct_tof_bound_mae_m",
-     [](const PointDepthError& p) { return bound_or_nan(p.direct_tof_bound_mae_m); }},
-}};
 
 /// Omits light levels, which every point contains, and the code, whose column has its full name.
 std::vector<std::size_t> reported_axes(const SweepSpec& spec) {
@@ -118,17 +92,15 @@ std::string sweep_csv(const WorkList& list, std::span<const SweepResult> results
   const std::vector<std::size_t> axes = reported_axes(spec);
   std::string text = "item,code";
   for (const std::size_t a : axes) text += fmt::format(",{}", csv_field(spec.axes[a].key));
-  for (const PointColumn& column : point_columns) text += fmt::format(",{}", column.name);
+  for (const PointColumn& column : point_columns({})) text += fmt::format(",{}", column.name);
   text += "\n";
   for_each_row(results, [&](const SweepResult& result, const PointDepthError& point) {
     text += fmt::format("{},{}", result.item + 1, csv_field(result.error.code));
     const std::vector<std::size_t> indices = spec.value_indices(result.item);
     for (const std::size_t a : axes)
       text += fmt::format(",{}", csv_field(spec.axes[a].values[indices[a]].text));
-    for (const PointColumn& column : point_columns) {
-      const double value = column.of(point);
-      text += std::isnan(value) ? "," : fmt::format(",{}", value);
-    }
+    for (const PointColumn& column : point_columns(point))
+      text += std::isnan(column.value) ? "," : fmt::format(",{}", column.value);
     text += "\n";
   });
   return text;
@@ -184,13 +156,13 @@ NpzArrays sweep_arrays(const WorkList& list, std::span<const SweepResult> result
     else
       add_texts(arrays, axis.key, texts);
   }
-  for (const PointColumn& column : point_columns) {
-    std::vector<double> values;
-    for_each_row(results, [&](const SweepResult&, const PointDepthError& point) {
-      values.push_back(column.of(point));
-    });
-    arrays[column.name] = list_array(values);
-  }
+  std::map<std::string, std::vector<double>> columns;
+  for (const PointColumn& column : point_columns({})) columns[column.name] = {};
+  for_each_row(results, [&](const SweepResult&, const PointDepthError& point) {
+    for (const PointColumn& column : point_columns(point))
+      columns[column.name].push_back(column.value);
+  });
+  for (const auto& [name, values] : columns) arrays[name] = list_array(values);
   return arrays;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -95,10 +94,6 @@ struct PointDepthError {
     return is_linear ? linear_mde_m : circular_mde_m;
   }
 };
-/// Replaces 0, which means no bound, by NaN.
-inline double bound_or_nan(double bound_m) {
-  return bound_m == 0.0 ? std::numeric_limits<double>::quiet_NaN() : bound_m;
-}
 auto fields_of(ConstOrNot<PointDepthError> auto& p) {
   return std::tuple(
       Field("point", p.point, FieldMark::in_place),
@@ -121,6 +116,14 @@ auto fields_of(ConstOrNot<PointDepthError> auto& p) {
             FieldMark::bound, FieldMark::may_be_null,
             Help{"bound for the camera's light; 0: no bound"}));
 }
+
+/// Column of a table of operating points, with the value at one of them.
+struct PointColumn {
+  std::string name;
+  double value = 0.0;  ///< NaN if there is no bound
+};
+/// Returns light, errors with their standard errors, and bounds.
+std::vector<PointColumn> point_columns(const PointDepthError& point);
 
 /// Averages over all operating points.
 struct DepthErrorMean {
