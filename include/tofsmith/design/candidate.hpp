@@ -60,7 +60,7 @@ auto fields_of(ConstOrNot<SearchRecord> auto& s) {
   return std::tuple(
       Field("work_unit", s.work_unit, Help{"unit of work: gradient steps or candidates"}),
       Field("error_name", s.error_name), Field("steps", s.steps),
-      Field("proved", s.proved, Help{"no other code in the search space is better"}),
+      Field("proved", s.proved, Help{"true if no other code of the search space is better"}),
       Field("account", s.account, Help{"search space, counts and pruning tests"}));
 }
 
