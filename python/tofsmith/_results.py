@@ -5,13 +5,16 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from . import _check
 from ._check import Path
 
 Kind = TypeVar("Kind")
+#: Annotated types of a class by the names of its members.
+_types_of: Callable[[type], dict[str, Any]] = cache(get_type_hints)
 
 
 class Estimate(NamedTuple):
@@ -25,7 +28,7 @@ def result_of(kind: type[Kind], values: Mapping[str, Any]) -> Kind:
     """Returns an object of a dataclass from values of the compiled module, which are converted to
     the annotated types: dicts to dataclasses, pairs to Estimate, handles to the classes that
     contain them."""
-    types = get_type_hints(kind)
+    types = _types_of(kind)
     return kind(**{name: _converted(types[name], value) for name, value in values.items()})
 
 
