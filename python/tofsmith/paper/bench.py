@@ -24,9 +24,7 @@ def scanning_codes(study: Study) -> tuple[Camera, list[CodeSet]]:
     return camera, study.codes(camera, (4, 5), BASELINES)
 
 
-@lru_cache(maxsize=64)
-def decoder_of(code: CodeSet, camera: Camera) -> Decoder:
-    return Decoder(code, camera)
+decoder_of = lru_cache(maxsize=64)(Decoder)
 
 
 def decoded_depths(scene: Scene, code: CodeSet, camera: Camera, light: Light, **options: Any) -> Any:
@@ -40,15 +38,15 @@ def decoded_depths(scene: Scene, code: CodeSet, camera: Camera, light: Light, **
 def emulate_range(
     code: CodeSet, camera: Camera, light: Light, *, target_m: float, shifts: int = 20,
     estimates: int = 300, seed: int = 1,
-) -> tuple[Any, Any]:
+) -> Any:
     """Measures a static target with one pixel while the modulation is delayed in equal steps over
     its period, which emulates a target that moves over the whole range at constant light. Returns
-    emulated depths (shifts,) and circular depth errors (shifts, estimates) [m]."""
+    circular depth errors (shifts, estimates) [m]."""
     true_m = (target_m + camera.range_m * np.arange(shifts) / shifts) % camera.range_m
     scene = Scene(np.repeat(true_m[:, None], estimates, axis=1).astype(np.float32))
     decoded_m, = decoded_depths(scene, code, camera, light, frames=1, seed=seed, falloff=False)
     difference = np.abs(decoded_m - true_m[:, None])
-    return true_m, np.minimum(difference, camera.range_m - difference)
+    return np.minimum(difference, camera.range_m - difference)
 
 
 class Plane:

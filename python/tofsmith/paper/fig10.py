@@ -110,7 +110,7 @@ def state_better(study: Study, errors: Errors, camera: Camera, codes: list[CodeS
         texts.append("{:.1f} and {:.1f} times behind O.D. {:g}".format(
             *np.exp(np.log(of_density).mean(axis=0)), density))
     light = light_behind_filter(2.0, SCAN_POWER_MW)
-    range_errors_m = {short_name(code.name): emulate_range(code, camera, light, target_m=1.0)[1]
+    range_errors_m = {short_name(code.name): emulate_range(code, camera, light, target_m=1.0)
                       for code in codes}
     study.state(HOLDS if (better == len(gains)).all() else IN_PART if better.sum() > len(gains) else FAILS,
                 "Redesigned codes scan real scenes with lower errors than the sinusoid and the "

@@ -11,7 +11,7 @@ from tofsmith import Camera, Waveform
 
 from ._study import Study
 from .cameras import paper_camera
-from .pairs import ZERO_RMS, Pair, centred, ideal_targets, pair_panels
+from .pairs import ZERO_RMS, Pair, ideal_targets, pair_of, pair_panels
 
 PEAK, F_MAX_IN_F0 = 15, 10
 WEIGHT = 3e-4  # lambda of problem (6)
@@ -43,8 +43,7 @@ def reproduce(study: Study) -> None:
     def designed(camera: Camera) -> tuple[Pair, float]:
         found, = tofsmith.factorize("hamiltonian-k4", camera, measurements=[2], keep_naive=False,
                                     random_starts=study.pick(30, 10), seed=study.seed)
-        best = found.best
-        return Pair(*centred(best.modulation, best.demodulation), camera, target), best.residual_rms
+        return pair_of(found, camera), found.best.residual_rms
 
     free, free_rms = designed(unlimited)
     band, band_rms = designed(limited)

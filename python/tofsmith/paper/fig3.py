@@ -10,7 +10,7 @@ from tofsmith import Factorization
 from ._study import FAILS, HOLDS, IN_PART, Study
 from ._style import colour_of, new_figure
 from .cameras import paper_camera
-from .pairs import ZERO_RMS, Pair, centred, pair_panels
+from .pairs import ZERO_RMS, pair_of, pair_panels
 
 PEAKS = (30, 15, 6, 5, 4, 3, 2)
 PEAKS_BETWEEN = (25, 20, 12, 10, 8)  # for the curves of residuals only
@@ -28,7 +28,7 @@ def reproduce(study: Study) -> None:
     state_k3(study, found[3])
     state_supplement(study, found)
 
-    k3 = {f"p = {peak}": pair_of(found[3][peak][0], peak) for peak in PEAKS}
+    k3 = {f"p = {peak}": pair_of(found[3][peak][0], paper_camera(peak)) for peak in PEAKS}
     study.picture("k3", pair_panels(k3, "hamiltonian-k3"),
                   "K = 3, code 1. Down to p = 6 a pulse of height 6 gives the target exactly. Below, the "
                   "pulse widens, until both functions are squares at p = 2.")
@@ -36,17 +36,12 @@ def reproduce(study: Study) -> None:
                   "One line per code (shifts and mirror images coincide). Each K reaches zero where p "
                   "meets the length of its walk: 6, 12 and 30.")
     for k in (4, 5):
-        codes = {f"code {i + 1}": pair_of(one, 5) for i, one in enumerate(found[k][5])}
+        codes = {f"code {i + 1}": pair_of(one, paper_camera(5)) for i, one in enumerate(found[k][5])}
         study.picture(f"k{k}", pair_panels(codes, f"hamiltonian-k{k}"), f"K = {k}, all codes, p = 5.")
     study.table("residuals", [
         {"K": k, "code": i + 1, "p": peak, "residual_rms": one.best.residual_rms,
          "modulation_peak": one.best.modulation.peak, "modulation_duty": one.best.modulation.duty}
         for k, of_k in found.items() for peak, codes in of_k.items() for i, one in enumerate(codes)])
-
-
-def pair_of(found: Factorization, peak: float) -> Pair:
-    waveforms = centred(found.best.modulation, found.best.demodulation)
-    return Pair(*waveforms, paper_camera(peak), found.target)
 
 
 def worst_rms(codes: list[Factorization]) -> float:

@@ -42,8 +42,7 @@ def reproduce(study: Study) -> None:
     state_limits(study, panels)
     state_unwrapping(study, decode_by_unwrapping(study))
 
-    surfaces.draw_values(study, panels)
-    study.table("surfaces", surfaces.surface_rows(panels))
+    surfaces.show_surfaces(study, panels)
     study.table("readings", [row for reading, of_limits in readings.items()
                              for row in surfaces.mean_rows(of_limits, reading=reading)])
 
@@ -58,7 +57,7 @@ def measure_reading(study: Study, reading: str) -> Panels:
             trials = study.pick({"rotation_trials": 100_000}, {})
         elif study.fast:
             trials = dict.fromkeys(("trials", "max_trials", "rotation_trials"), 2000)
-        camera = surfaces.with_light_levels(study, paper_camera(*LIMITS[title])).replace(
+        camera = paper_camera(*LIMITS[title]).replace(
             sensor={"read_noise_e": math.sqrt(variance_e2)}, operating={"albedo": albedo})
         return surfaces.measure_surface(study, code, camera, **trials)
 

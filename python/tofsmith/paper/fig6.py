@@ -8,7 +8,7 @@ import tofsmith
 
 from ._study import FAILS, HOLDS, IN_PART, Study
 from .cameras import paper_camera
-from .pairs import POINTS, Pair, centred, pair_panels
+from .pairs import POINTS, pair_of, pair_panels
 
 PEAK, F_MAX_IN_F0 = 15, 10
 SHOWN = (0, 2)  # the slowest code, and the fastest that still follows its target
@@ -19,8 +19,7 @@ def reproduce(study: Study) -> None:
     camera = paper_camera(PEAK, F_MAX_IN_F0)
     found = tofsmith.factorize("hamiltonian-k5", camera, seed=study.seed,
                                random_starts=study.pick(30, 10))
-    pairs = [Pair(*centred(one.best.modulation, one.best.demodulation), camera, one.target)
-             for one in found]
+    pairs = [pair_of(one, camera) for one in found]
     rows = []
     for one, pair in zip(found, pairs):
         seen = pair.correlation(camera.samples)

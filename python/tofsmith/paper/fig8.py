@@ -36,8 +36,7 @@ def reproduce(study: Study) -> None:
                             for title, one in gains.items()) + ".")
 
     # 2. Figures and numbers.
-    surfaces.draw_values(study, panels)
-    study.table("surfaces", surfaces.surface_rows(panels))
+    surfaces.show_surfaces(study, panels)
     study.table("means", surfaces.mean_rows(panels))
 
 
@@ -45,10 +44,9 @@ def measure_camera(study: Study, f_max_in_f0: float) -> Panel:
     """Evaluates redesigned codes of 3 to 6 exposures, the baselines, and K = 4 with one tap."""
     one_tap = paper_camera(PEAK, f_max_in_f0)
     camera = one_tap.replace(name=f"{one_tap.name}-two-bucket", sensor={"taps": 2})
-    codes = study.codes(camera, (3, 4, 5, 6), BASELINES)
-    measured = [surfaces.measure_surface(study, code, surfaces.with_light_levels(study, camera))
-                for code in codes]
+    measured = [surfaces.measure_surface(study, code, camera)
+                for code in study.codes(camera, (3, 4, 5, 6), BASELINES)]
     # The same light and time with one tap shows the gain of the second bucket.
     single = study.redesigned(4, one_tap).renamed(ONE_TAP)
-    measured.append(surfaces.measure_surface(study, single, surfaces.with_light_levels(study, one_tap)))
+    measured.append(surfaces.measure_surface(study, single, one_tap))
     return {surface.report.code: surface for surface in measured}

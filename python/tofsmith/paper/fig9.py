@@ -24,18 +24,16 @@ def reproduce(study: Study) -> None:
     ours = codes[0]
 
     # 2. Delay the modulation in steps over the whole period, and measure each delay many times.
-    measured = {code.name: [emulate_range(code, camera, light_behind_filter(density), target_m=0.7,
-                                          shifts=study.pick(20, 5), estimates=study.pick(300, 30),
-                                          seed=study.seed)
-                            for density in OPTICAL_DENSITIES]
-                for code in codes}
     percent: dict[str, Any] = {}  # of the range, with standard errors: (filters, 2)
-    for name, ranges in measured.items():
-        errors_m = np.array([errors for _, errors in ranges])  # (filters, shifts, estimates)
+    for code in codes:
+        errors_m = np.array([  # (filters, shifts, estimates)
+            emulate_range(code, camera, light_behind_filter(density), target_m=0.7, seed=study.seed,
+                          shifts=study.pick(20, 5), estimates=study.pick(300, 30))
+            for density in OPTICAL_DENSITIES])
         variance_m2 = errors_m.var(axis=2, ddof=1) / errors_m.shape[2]
         mean_m = errors_m.mean(axis=(1, 2))
         se_m = np.sqrt(variance_m2.sum(axis=1)) / errors_m.shape[1]
-        percent[name] = 100 / camera.range_m * np.stack([mean_m, se_m], axis=1)
+        percent[code.name] = 100 / camera.range_m * np.stack([mean_m, se_m], axis=1)
 
     # 3. The redesigned code is better behind every filter, by more than two standard errors.
     for baseline in ("sinusoid-k4", "multifrequency-k5"):

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import tofsmith
-from tofsmith import Camera, Waveform
+from tofsmith import Camera, Factorization, Waveform
 
 from ._style import colour_of, legend_below, new_figure
 
@@ -58,12 +58,13 @@ def ideal_targets(family: str) -> Any:
     return tofsmith.ForwardModel(family, camera).correlation_table()
 
 
-def centred(modulation: Waveform, demodulation: Waveform) -> tuple[Waveform, Waveform]:
-    """Delays a pair so that the middle of the longest pulse is at half the period."""
+def pair_of(found: Factorization, camera: Camera) -> Pair:
+    """Returns the best waveforms of a factorization, with the longest pulse at half the period."""
+    modulation, demodulation = found.best.modulation, found.best.demodulation
     intervals = modulation.on_intervals
     rise, fall = intervals[np.argmax(intervals[:, 1] - intervals[:, 0]), :]
     delay = 0.5 - 0.5 * float(rise + fall)
-    return modulation.delayed(delay), demodulation.delayed(delay)
+    return Pair(modulation.delayed(delay), demodulation.delayed(delay), camera, found.target)
 
 
 def pair_panels(pairs: dict[str, Pair], code: str) -> Figure:

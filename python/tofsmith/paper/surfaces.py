@@ -56,10 +56,10 @@ def with_light_levels(study: Study, camera: Camera) -> Camera:
 
 
 def measure_surface(study: Study, code: CodeSet, camera: Camera, **trials: int) -> Surface:
-    """Evaluates the depth error at every light level of the camera, to a relative standard error of
-    2 %."""
+    """Evaluates the depth error at the paper's light levels, to a relative standard error of 2 %."""
     counts: Any = study.pick({"trials": 8000, "max_trials": 50_000_000, "rotation_trials": 20000},
                         {"trials": 16000, "max_trials": 16000, "rotation_trials": 4000}) | trials
+    camera = with_light_levels(study, camera)
     # 1. Find the best origin of depth, with other random numbers than in step 2.
     rotation, _ = tofsmith.best_rotation(code, camera, trials=counts.pop("rotation_trials"),
                                          seed=study.seed + 1)
@@ -115,9 +115,9 @@ def together(comparisons: Sequence[Comparison]) -> Comparison:
                         for count in ("better", "tied", "worse")))
 
 
-def draw_values(study: Study, panels: Panels) -> None:
-    """Draws for every camera maps of the linear error, and sections at an ambient light of 1e4
-    e/s."""
+def show_surfaces(study: Study, panels: Panels) -> None:
+    """Draws for every camera maps of the linear error, and sections at an ambient light of 1e4 e/s.
+    Writes a table with one row per camera, code and light level."""
     for title, panel in panels.items():
         reports = [surface.report for surface in panel.values()]
         name = title.replace(" ", "").replace(",", "-").replace("=", "")
@@ -125,15 +125,12 @@ def draw_values(study: Study, panels: Panels) -> None:
                       f"{title}: linear mean depth error, each code at its best origin of depth.")
         study.picture(f"curves-{name}", plot.depth_error_curves(reports, at=1e4),
                       f"{title}: a cut at ambient light of 1e4 e/s.")
-
-
-def surface_rows(panels: Panels) -> list[dict[str, Any]]:
-    """Returns one row per camera, code and light level, for a table."""
     columns = ("signal_e_per_s", "ambient_e_per_s", "linear_mde_m", "linear_se_m", "circular_mde_m")
-    return [{"setting": title, "code": name, "rotation_bin": surface.rotation_bin}
-            | dict(zip(columns, map(float, values)))
-            for title, panel in panels.items() for name, surface in panel.items()
-            for values in zip(*(getattr(surface.report, column) for column in columns))]
+    study.table("surfaces", [
+        {"setting": title, "code": name, "rotation_bin": surface.rotation_bin}
+        | dict(zip(columns, map(float, values)))
+        for title, panel in panels.items() for name, surface in panel.items()
+        for values in zip(*(getattr(surface.report, column) for column in columns))])
 
 
 def mean_rows(panels: Panels, **setting: str) -> list[dict[str, Any]]:
