@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "camera/shared/depth_prior.hpp"
@@ -16,6 +18,7 @@
 #include "design/factorize/alternation.hpp"
 #include "design/judge.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 
@@ -25,28 +28,53 @@ constexpr std::uint32_t random_choices = 8;
 
 double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                       bool at_best_rotation) {
-  if (why_no_depth(code, camera)) return std::numeric_limits<double>::infinity();
+  const std::optional<CodeOnCamera> on = if_it_has_depth(code, camera);
+  if (!on) return std::numeric_limits<double>::infinity();
   if (at_best_rotation && !DepthPrior(camera).is_uniform()) {
-    const BestRotation best = best_rotation(code, camera, options);
+    const BestRotation best = best_rotation(*on, options);
     return best.linear_geometric_mean_m[static_cast<std::size_t>(best.rotation_bin)];
   }
   const DepthErrorKind kind = at_best_rotation ? DepthErrorKind::circular : camera.operating.error;
-  return geometric_mean_error_m(evaluate(code, camera, options), kind);
+  return geometric_mean_error_m(evaluate(*on, options), kind);
 }
 
-template <typename Error>
+/// Errors of choices, each of which is evaluated once.
+class ErrorsOfChoices {
+ public:
+  explicit ErrorsOfChoices(std::function<double(const PairChoice&)> error_of)
+      : error_of_(std::move(error_of)) {}
+
+  void evaluate(const std::vector<PairChoice>& choices) {
+    std::vector<PairChoice> fresh;
+    for (const PairChoice& choice : choices)
+      if (!known_.contains(choice)) fresh.push_back(choice);
+    std::vector<double> errors_m(fresh.size());
+    parallel_for_indices(fresh.size(), [&](std::size_t i) { errors_m[i] = error_of_(fresh[i]); });
+    for (std::size_t i = 0; i < fresh.size(); ++i) known_[fresh[i]] = errors_m[i];
+  }
+  double operator()(const PairChoice& choice) {
+    evaluate({choice});
+    return known_.at(choice);
+  }
+
+ private:
+  std::function<double(const PairChoice&)> error_of_;
+  std::map<PairChoice, double> known_;
+};
+
 PairChoice bettered(PairChoice best, const std::vector<Factorization>& factorizations,
-                    const Error& error_of, const Progress& progress) {
+                    ErrorsOfChoices& error_of, const Progress& progress) {
   constexpr int rounds = 3;
   bool improved = true;
   for (int round = 0; improved && round < rounds; ++round) {
     improved = false;
     for (std::size_t k = 0; k < best.size(); ++k) {
       const double done = round + static_cast<double>(k) / static_cast<double>(best.size());
-      for (std::size_t i = 0; i < factorizations[k].candidates.size(); ++i) {
-        report(progress, done / rounds, "selecting pairs by depth error");
-        PairChoice trial = best;
-        trial[k] = i;
+      report(progress, done / rounds, "selecting pairs by depth error");
+      std::vector<PairChoice> trials(factorizations[k].candidates.size(), best);
+      for (std::size_t i = 0; i < trials.size(); ++i) trials[i][k] = i;
+      error_of.evaluate(trials);
+      for (const PairChoice& trial : trials) {
         if (error_of(trial) >= error_of(best)) continue;
         best = trial;
         improved = true;
@@ -81,14 +109,10 @@ CodeSet assemble(const std::string& name, const std::vector<Factorization>& fact
 PairChoice choose_by_depth_error(const std::vector<Factorization>& factorizations,
                                  const Camera& camera, const EvaluateOptions& options,
                                  bool at_best_rotation, const Progress& progress) {
-  std::map<PairChoice, double> known;
-  const auto error_of = [&](const PairChoice& choice) {
-    const auto [entry, fresh] = known.try_emplace(choice, 0.0);
-    if (fresh)
-      entry->second = search_error_m(assemble("candidate", factorizations, choice, camera), camera,
-                                     options, at_best_rotation);
-    return entry->second;
-  };
+  ErrorsOfChoices error_of([&](const PairChoice& choice) {
+    return search_error_m(assemble("candidate", factorizations, choice, camera), camera, options,
+                          at_best_rotation);
+  });
 
   // Individually good pairs need not be the best combination.
   std::vector<PairChoice> starts{PairChoice(factorizations.size(), 0), {}};
