@@ -51,7 +51,7 @@ def _converted(kind: Any, value: Any) -> Any:
         return tuple(map(_converted, items, value))
     if kind is Estimate:
         return Estimate(*value)
-    if dataclasses.is_dataclass(kind) and isinstance(value, dict):
+    if isinstance(kind, type) and dataclasses.is_dataclass(kind) and isinstance(value, dict):
         return result_of(kind, value)
     return kind._of(value) if hasattr(kind, "_of") else value
 
