@@ -122,6 +122,7 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
   const ProgressParts parts(progress,
                             {50, later ? 10.0 : 50.0, later ? 40.0 : 0.0, has_others ? 50.0 : 0.0});
   if (rotates(camera, options)) {
+    // Fewer trials suffice, because the error changes little around the best rotation.
     constexpr std::int64_t trials_of_all_points = 125000;
     const auto points = static_cast<std::int64_t>(camera.operating.points().size());
     EvaluateOptions search = judging;

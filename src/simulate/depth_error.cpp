@@ -47,8 +47,8 @@ Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& l
 
 void EvaluateOptions::validate() const { check_fields(*this); }
 
-CodeOnCamera::CodeOnCamera(const CodeSet& playable, const Camera& given)
-    : code(playable),
+CodeOnCamera::CodeOnCamera(const CodeSet& fitting, const Camera& given)
+    : code(fitting),
       camera(judged_camera(given)),
       model(code, camera),
       table(make_decoding_table(model, camera)) {}

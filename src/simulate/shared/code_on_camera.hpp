@@ -10,8 +10,8 @@ namespace tofsmith {
 
 /// Forward model and decoding table of a code on judged_camera().
 struct CodeOnCamera {
-  /// @param playable  must outlive this object
-  CodeOnCamera(const CodeSet& playable, const Camera& given);
+  /// @param fitting  must fit the camera and outlive this object
+  CodeOnCamera(const CodeSet& fitting, const Camera& given);
   CodeOnCamera(CodeSet&&, const Camera&) = delete;
 
   const CodeSet& code;
