@@ -299,7 +299,8 @@ std::vector<TableReader> TableReader::enter_each(std::string_view key) {
   std::vector<TableReader> readers;
   const auto found = find(key);
   if (!found) return readers;
-  const std::string expected = fmt::format("tables that begin with [[{}]]", full(key));
+  const std::string expected =
+      is_toml() ? fmt::format("tables that begin with [[{}]]", full(key)) : "a list of objects";
   for (const ValueReader& element : found->elements(expected))
     readers.emplace_back(element, expected);
   return readers;

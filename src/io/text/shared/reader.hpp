@@ -171,8 +171,8 @@ class ValueReader {
   }
 };
 
-/// Reads the keys of one table. Missing keys leave values unchanged. finish() rejects keys that
-/// were not read.
+/// Reads the keys of one table. Missing keys, and null for optional values, leave values unchanged.
+/// finish() rejects keys that were not read.
 class TableReader : public ValueReader {
  public:
   /// @param expected  for the error message
@@ -192,7 +192,7 @@ class TableReader : public ValueReader {
   }
   template <typename Value>
   void value(std::string_view key, std::optional<Value>& target) {
-    if (const auto found = find(key)) found->read(target.emplace());
+    if (const auto found = find(key); found && !found->is_null()) value(key, target.emplace());
   }
   template <HasWords Enum>
   void value(std::string_view key, Enum& target) {
