@@ -232,6 +232,7 @@ TEST(LabEngine, CommandsCanBePastedIntoAShell) {
            {"built_in", "paper-10f0"},
            {"codes", {"hamiltonian-k4", "it's.code.json"}},
            {"trials", 1000},
+           {"seed", nullptr},
            {"changes", {{{"key", "operating.signal_e_per_s"}, {"value", "[1e3, 1e4]"}}}}});
   EXPECT_EQ(answered.json["command"],
             "tofsmith evaluate hamiltonian-k4 'it'\\''s.code.json' --camera paper-10f0 "
@@ -317,10 +318,25 @@ TEST(LabEngine, EveryRequestGetsAReply) {
   EXPECT_FALSE(error_of(std::string(std::size_t{33} << 20, ' ')).empty());
 }
 
-TEST(LabEngine, AnErrorContainsItsField) {
-  EXPECT_EQ(error_of(R"({"call": "evaluate", "trials": "many", "built_in": "paper-10f0",
-                        "code": {"name": "sinusoid-k4"}})")["field"],
-            "trials");
+TEST(LabEngine, WrongArgumentsAreReportedAsInFiles) {
+  const auto error = [](const std::string& arguments) {
+    return error_of(R"({"call": "evaluate", "built_in": "paper-10f0",
+                        "code": {"name": "sinusoid-k4"}, )" +
+                    arguments + "}");
+  };
+  EXPECT_EQ(error(R"("trials": "many")")["message"],
+            "request: /trials: found \"many\"; expected an integer in [0, 2^64)");
+  EXPECT_EQ(error(R"("trails": 100)")["message"],
+            "request: unknown key /trails; did you mean /trials?");
+  EXPECT_EQ(error(R"("changes": 3)")["message"],
+            "request: /changes: found 3; expected a list of objects");
+  EXPECT_EQ(error(R"("trials": 1)")["field"], "trials");
+}
+
+TEST(LabEngine, AnEdgeRequiresItsPlace) {
+  EXPECT_EQ(error_of(R"({"call": "move_edge", "built_in": "paper-30x", "arm": "gate", "edge": 1,
+                        "measurement": 0, "code": {"name": "square-k4"}})")["field"],
+            "position");
 }
 
 }  // namespace

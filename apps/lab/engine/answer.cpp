@@ -10,6 +10,8 @@
 #include <stdexcept>
 
 #include "code_call.hpp"
+#include "io/documents/shared/document_text.hpp"
+#include "io/text/shared/reader.hpp"
 #include "request.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/filter.hpp"
@@ -33,6 +35,19 @@ constexpr std::array shown_families = {
     "single-ramp-k3", "double-ramp-k3",    "pulsed-multifrequency-k5",
     "gray-k4"};
 
+/// Converts JSON to text. Invalid UTF-8 (e.g. in names from files) is replaced; non-finite numbers
+/// become null.
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// @param field  empty: unknown
+Reply error_reply(std::string_view message, std::string_view field = "") {
+  Json error = {{"message", message}};
+  if (!field.empty()) error["field"] = field;
+  return {text_of(Json{{"error", std::move(error)}}), {}};
+}
+
 Answer about() {
   Answer answer;
   answer["version"] = TOFSMITH_VERSION;
@@ -46,54 +61,78 @@ Answer about() {
   return answer;
 }
 
-Answer set(const Request& request) {
-  const Change asked{request.text("key"),
-                     request.has("value") ? std::optional(request.text("value")) : std::nullopt};
-  const auto [camera, resolved] = changed(request.camera(), asked);
+Answer camera(const CameraArguments& arguments) { return camera_answer(arguments.load()); }
+
+Answer set(const CameraArguments& arguments, const Change& change) {
+  const auto [camera, resolved] = changed(arguments.load(), change);
   Answer answer = camera_answer(camera);
   answer["change"] = {{"key", resolved.key},
                       {"value", resolved.value ? Json(*resolved.value) : Json()}};
   return answer;
 }
 
-Answer code(const Request& request) {
-  const Camera camera = request.camera();
-  return code_answer(request.code(camera), camera);
+Answer code(const CodeArguments& arguments) {
+  const Camera camera = arguments.camera.load();
+  return code_answer(arguments.code.load(camera), camera);
 }
 
-Answer move_edge(const Request& request) {
-  const Camera camera = request.camera();
-  const CodeSet before = request.code(camera);
-  const std::string arm = request.text("arm");
-  require(arm == "light" || arm == "gate", "arm", arm, "expected light or gate");
-  const EdgePlace place{arm == "light",
-                        static_cast<int>(request.integer("measurement", 0, 1'000'000)),
-                        static_cast<std::size_t>(request.integer("edge", 0, 1'000'000))};
-  const CodeSet edited = with_edge_moved(before, camera, place, request.number("position"));
+Answer move_edge(const CodeArguments& arguments, const EdgeMove& move) {
+  const Camera camera = arguments.camera.load();
+  const CodeSet edited = with_edge_moved(arguments.code.load(camera), camera, move);
   Answer answer = code_answer(edited, camera);
   answer["file"] = code_to_json(edited);
   return answer;
 }
 
-Answer save_code(const Request& request) {
+Answer save_code(const CodeArguments& arguments) {
   Answer answer;
-  const CodeSet code = request.code(request.camera());
+  const CodeSet code = arguments.code.load(arguments.camera.load());
   answer["name"] = code.name();
   answer["file"] = code_to_json(code);
   return answer;
 }
 
-Answer call(std::string_view name, const Request& request, const Progress& progress) {
+template <typename Arguments>
+void read_arguments(TableReader& table, Arguments& arguments) {
+  for_each_field(arguments, [&](const auto& field) {
+    using Value = std::remove_reference_t<decltype(field.value)>;
+    if constexpr (std::is_same_v<Value, std::vector<Change>>)
+      table.tables(field.name, [&](TableReader& change) {
+        read_arguments(change, field.value.emplace_back());
+      });
+    else if constexpr (!HasFields<Value>)
+      table.value(field.name, field.value);
+    else if (field.is(FieldMark::in_place))
+      read_arguments(table, field.value);
+    else
+      table.table(field.name, field.value, read_arguments<Value>);
+  });
+}
+
+Answer call(TableReader& request, const Progress& progress) {
+  std::string name;
+  request.value("call", name);
+  const auto with = [&](auto function, auto... arguments) {
+    (read_arguments(request, arguments), ...);
+    request.finish();
+    (check_fields(arguments), ...);
+    if constexpr (std::is_invocable_v<decltype(function), decltype(arguments)..., Progress>)
+      return function(arguments..., progress);
+    else
+      return function(arguments...);
+  };
   if (name == "about") return about();
-  if (name == "camera") return camera_answer(request.camera());
-  if (name == "set") return set(request);
-  if (name == "code") return code(request);
-  if (name == "move_edge") return move_edge(request);
-  if (name == "save_code") return save_code(request);
-  if (name == "evaluate") return evaluate_answer(request, progress);
-  if (name == "scene") return scene_answer(request, progress);
-  if (name == "design") return design_answer(request, progress);
-  if (name == "command") return command_answer(request);
+  if (name == "camera") return with(camera, CameraArguments());
+  if (name == "set") return with(set, CameraArguments(), Change());
+  if (name == "code") return with(code, CodeArguments());
+  if (name == "move_edge") return with(move_edge, CodeArguments(), EdgeMove());
+  if (name == "save_code") return with(save_code, CodeArguments());
+  if (name == "evaluate") return with(evaluate_answer, CodeArguments(), EvaluateOptions());
+  if (name == "scene") return with(scene_answer, CodeArguments(), SceneArguments());
+  if (name == "design") return with(design_answer, CameraArguments(), DesignArguments());
+  if (name == "command")
+    return with(command_answer, CameraArguments(), CommandArguments(), SceneArguments(),
+                DesignArguments());
   reject("call", name,
          "expected about, camera, set, code, move_edge, save_code, evaluate, scene, design or "
          "command");
@@ -101,15 +140,18 @@ Answer call(std::string_view name, const Request& request, const Progress& progr
 
 }  // namespace
 
+Reply Answer::reply() && {
+  return {text_of(Json{{"answer", std::move(json_)}}), std::move(arrays_)};
+}
+
 Reply answer(std::string_view request, const Progress& progress) {
   try {
     if (request.size() > max_request_bytes)
       return error_reply(
           fmt::format("found {} bytes; expected at most {}", request.size(), max_request_bytes));
-    const nlohmann::json json = nlohmann::json::parse(request);
-    require(json.is_object(), "request", json.type_name(), "expected an object");
-    const Request arguments(json);
-    return call(arguments.text("call"), arguments, progress).reply();
+    const Document document = parse_json(request, "request");
+    TableReader arguments(document);
+    return call(arguments, progress).reply();
   } catch (const InvalidArgument& error) {
     return error_reply(error.what(), error.field());
   } catch (const std::bad_alloc&) {

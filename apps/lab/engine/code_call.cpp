@@ -246,25 +246,25 @@ Answer code_answer(const CodeSet& code, const Camera& camera) {
   return answer;
 }
 
-CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgePlace& place,
-                        double position) {
-  require(place.measurement >= 0 && place.measurement < code.measurements(), "measurement",
-          place.measurement, fmt::format("expected 0 to {}", code.measurements() - 1));
+CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgeMove& move) {
+  require(move.measurement < code.measurements(), "measurement", move.measurement,
+          fmt::format("expected 0 to {}", code.measurements() - 1));
   std::vector<Waveform> light, gates;
   for (int e = 0; e < code.exposures(); ++e) light.push_back(code.modulation(e));
   for (int i = 0; i < code.measurements(); ++i) gates.push_back(code.demodulation(i));
-  const auto exposure = static_cast<std::size_t>(code.exposure_of(place.measurement));
-  const auto gate = static_cast<std::size_t>(place.measurement);
-  Waveform& waveform = place.is_light ? light[exposure] : gates[gate];
+  const auto exposure = static_cast<std::size_t>(code.exposure_of(move.measurement));
+  const auto gate = static_cast<std::size_t>(move.measurement),
+             edge = static_cast<std::size_t>(move.edge);
+  const bool is_light = move.arm == EdgeArm::light;
+  Waveform& waveform = is_light ? light[exposure] : gates[gate];
   const std::vector<double> edges = edges_of(waveform);
-  require(!edges.empty(), place.is_light ? "light" : "gate", place.measurement,
+  require(!edges.empty(), name_of(move.arm), move.measurement,
           "has no edges, because the waveform is not binary");
-  require(place.edge < edges.size(), "edge", place.edge,
-          fmt::format("expected 0 to {}", edges.size() - 1));
+  require(edge < edges.size(), "edge", edge, fmt::format("expected 0 to {}", edges.size() - 1));
 
   const double gap = 0.25 / code.samples();
-  const std::vector<OnInterval> on = moved_edge(waveform, place.edge, position, gap);
-  if (place.is_light) {
+  const std::vector<OnInterval> on = moved_edge(waveform, edge, move.position, gap);
+  if (is_light) {
     double duty = 0.0;
     for (const OnInterval& interval : on) duty += interval.fall - interval.rise;
     waveform = Waveform::binary(on, std::min(1.0 / duty, camera.light.peak_factor));

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "request.hpp"
+#include <limits>
+
+#include "answer.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith::lab {
 
@@ -19,19 +22,29 @@ Answer camera_answer(const Camera& camera);
 ///     nominal waveforms; empty for waveforms that are not binary.
 Answer code_answer(const CodeSet& code, const Camera& camera);
 
-struct EdgePlace {
-  bool is_light = true;
-  int measurement = 0;   ///< tap value; a light waveform applies to all taps of its exposure
-  std::size_t edge = 0;  ///< index into its light_edges or gate_edges
+enum class EdgeArm { light, gate };
+constexpr auto words_of(EdgeArm /*any*/) { return word_list("light", "gate"); }
+
+/// The defaults are invalid.
+struct EdgeMove {
+  EdgeArm arm = EdgeArm::light;
+  int measurement = -1;
+  int edge = -1;
+  double position = std::numeric_limits<double>::quiet_NaN();
 };
+auto fields_of(ConstOrNot<EdgeMove> auto& m) {
+  return std::tuple(
+      Field("arm", m.arm, Help{"arm of the waveform; light applies to all taps of its exposure"}),
+      Field("measurement", m.measurement, at_least(0), Help{"tap value"}),
+      Field("edge", m.edge, at_least(0), Help{"index into its light_edges or gate_edges"}),
+      Field("position", m.position, finite(), Help{"new position in periods"}));
+}
 
 /// Returns the code with one switching time moved, at most to the neighbouring edge. The light
 /// keeps the maximum brightness that its average and peak power permit. Complementary taps remain
 /// complementary.
-/// @param position  [periods], any finite number
 /// @throws InvalidArgument for an invalid place, a waveform that is not binary, or a code that the
 ///   camera does not support
-CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgePlace& place,
-                        double position);
+CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgeMove& move);
 
 }  // namespace tofsmith::lab

@@ -2,70 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <variant>
+#include <utility>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
-#include "tofsmith/core/image.hpp"
+#include "tofsmith/core/fields.hpp"
 
+// Arguments of several calls. Members with FieldMark::in_place are arguments themselves.
 namespace tofsmith::lab {
-
-using Json = nlohmann::ordered_json;
-
-/// Array that is transferred in binary form.
-struct NamedArray {
-  std::string name;
-  std::variant<std::vector<float>, std::vector<double>, std::vector<std::int32_t>,
-               std::vector<std::uint8_t>>
-      values;
-  std::vector<std::size_t> shape;
-};
-
-struct Reply {
-  std::string json;
-  std::vector<NamedArray> arrays;
-};
-
-/// Answer under construction: a JSON object and the arrays to which it refers.
-class Answer {
- public:
-  Json& operator[](const char* key) { return json_[key]; }
-
-  /// Adds an array, and {"array": name, "shape": [...]} under that name to the object.
-  template <typename Number>
-  void add(std::string_view name, std::vector<Number> values, std::vector<std::size_t> shape) {
-    json_[std::string(name)] = {{"array", name}, {"shape", shape}};
-    arrays_.push_back({std::string(name), std::move(values), std::move(shape)});
-  }
-  /// Adds a matrix with shape (columns, rows).
-  void add_columns(std::string_view name, const Eigen::MatrixXd& matrix) {
-    add(name, std::vector<double>(matrix.data(), matrix.data() + matrix.size()),
-        {static_cast<std::size_t>(matrix.cols()), static_cast<std::size_t>(matrix.rows())});
-  }
-  template <typename Number>
-  void add(std::string_view name, const Image<Number>& image) {
-    add(name, image.pixels,
-        {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)});
-  }
-
-  Reply reply() &&;
-
- private:
-  Json json_ = Json::object();
-  std::vector<NamedArray> arrays_;
-};
-
-/// Returns {"error": {"message": ..., "field": ...}}.
-/// @param field  empty: unknown
-Reply error_reply(std::string_view message, std::string_view field = "");
 
 /// Changed key of the camera, as for `--set`. Without a value the key is removed, which no
 /// command-line option can do.
@@ -73,40 +20,44 @@ struct Change {
   std::string key;
   std::optional<std::string> value;
 };
+auto fields_of(ConstOrNot<Change> auto& c) {
+  return std::tuple(Field("key", c.key, Help{"camera key"}),
+                    Field("value", c.value, Help{"value in TOML"}, IfAbsent{"removes the key"}));
+}
 
-/// Arguments of a call. Every member throws InvalidArgument with the argument, its value and the
-/// expected value.
-class Request {
- public:
-  /// @param json  an object
-  explicit Request(const nlohmann::json& json) : json_(json) {}
+struct CameraArguments {
+  std::optional<std::string> built_in;
+  std::string camera;
+  std::vector<Change> changes;
 
-  bool has(const char* name) const;
-  std::string text(const char* name) const;
-  std::string text(const char* name, const std::string& otherwise) const;
-  double number(const char* name) const;
-  std::optional<double> optional_number(const char* name) const;
-  std::int64_t integer(const char* name, std::int64_t low, std::int64_t high) const;
-  std::int64_t integer(const char* name, std::int64_t low, std::int64_t high,
-                       std::int64_t otherwise) const;
-  std::vector<std::string> texts(const char* name) const;
-  std::vector<Change> changes() const;
-
-  /// Returns the camera: `camera`, the text of a camera file, or `built_in`, the name of a camera;
-  /// with the `changes`.
   /// @throws IoError as parse_camera_toml()
-  Camera camera() const;
-  /// Returns the code: {"name": a family}, built for the camera, or {"file": the text of a code
-  /// file}.
+  Camera load() const;
+};
+auto fields_of(ConstOrNot<CameraArguments> auto& c) {
+  return std::tuple(Field("built_in", c.built_in, Help{"name of a camera"}),
+                    Field("camera", c.camera, Help{"text of a camera file if there is no name"}),
+                    Field("changes", c.changes, Help{"changed keys, at most 1000"}));
+}
+
+struct CodeSource {
+  std::optional<std::string> name, file;
+
   /// @throws IoError as load_code() and parse_code_json(); InvalidArgument for a code that the
   ///   camera does not support
-  CodeSet code(const Camera& camera) const;
-
- private:
-  [[noreturn]] void refuse(const char* name, const char* expected) const;
-
-  const nlohmann::json& json_;
+  CodeSet load(const Camera& camera) const;
 };
+auto fields_of(ConstOrNot<CodeSource> auto& c) {
+  return std::tuple(Field("name", c.name, Help{"family, built for the camera"}),
+                    Field("file", c.file, Help{"text of a code file, which is used first"}));
+}
+
+struct CodeArguments {
+  CameraArguments camera;
+  CodeSource code;
+};
+auto fields_of(ConstOrNot<CodeArguments> auto& a) {
+  return std::tuple(Field("camera", a.camera, FieldMark::in_place), Field("code", a.code));
+}
 
 /// Returns the camera with one key changed. If the kind of impulse response changes, missing
 /// numbers become 10 f0.

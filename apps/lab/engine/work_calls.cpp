@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,51 +41,28 @@ std::string shell_word(const std::string& word) {
   return text + "'";
 }
 
-/// Returns the name of the built-in camera, or of the file to which the camera was saved.
-std::string camera_name(const Request& request) {
-  return request.has("camera_file") ? request.text("camera_file") : request.text("built_in", "");
-}
-
 /// Returns `--set ...` for every changed key.
-std::string settings_words(const Request& request) {
+std::string settings_words(const CameraArguments& camera) {
   std::string words;
-  for (const Change& change : request.changes())
+  for (const Change& change : camera.changes)
     words += " --set " + shell_word(change.key + "=" + change.value.value_or(""));
   return words;
 }
 
-/// Returns `--camera X --set ...` for everything that differs from the defaults.
-std::string camera_words(const Request& request) {
-  const std::string name = camera_name(request);
-  return (name.empty() ? "" : " --camera " + shell_word(name)) + settings_words(request);
-}
-
-std::string option(const Request& request, const char* argument, const char* name) {
-  const std::optional<double> number = request.optional_number(argument);
+template <typename Number>
+std::string option(const char* name, const std::optional<Number>& number) {
   return number ? fmt::format(" {} {}", name, *number) : "";
 }
 
-std::string scene_commands(const Request& request, const std::string& code,
+std::string scene_commands(const SceneArguments& scene, const std::string& code,
                            const std::string& camera) {
-  std::string simulate = fmt::format("tofsmith simulate {} --code {}{}",
-                                     shell_word(request.text("scene", "table-top")), code, camera);
-  if (request.has("width")) {
-    const auto width = request.integer("width", 8, 1024);
-    simulate += fmt::format(" --width {} --height {}", width,
-                            request.integer("height", 8, 1024, width * 3 / 4));
-  }
-  simulate += option(request, "signal", "--signal") + option(request, "ambient", "--ambient") +
-              option(request, "seed", "--seed") + " -o raw.npy";
-  std::string decode = fmt::format("tofsmith decode raw.npy --code {}{}", code, camera);
-  if (const std::string filter = request.text("filter", "off"); filter != "off")
-    decode += " --filter " + shell_word(filter);
-  return simulate + "\n" + decode + " -o depth.npy";
-}
-
-constexpr std::int64_t max_seed = std::int64_t{1} << 53;  // larger integers are not exact in JSON
-
-std::uint64_t seed_of(const Request& request) {
-  return static_cast<std::uint64_t>(request.integer("seed", 0, max_seed, 1));
+  const std::string filter = scene.filter == "off" ? "" : " --filter " + shell_word(scene.filter);
+  return fmt::format("tofsmith simulate {} --code {}{} --width {} --height {}",
+                     shell_word(scene.scene), code, camera, scene.width, scene.rows()) +
+         option("--signal", scene.signal) + option("--ambient", scene.ambient) +
+         option("--seed", scene.seed) +
+         fmt::format(" -o raw.npy\ntofsmith decode raw.npy --code {}{}{} -o depth.npy", code,
+                     camera, filter);
 }
 
 /// Adds one number per operating point, (S, A).
@@ -98,13 +76,10 @@ void add_map(Answer& answer, std::string_view name, const DepthErrorReport& repo
 
 }  // namespace
 
-Answer evaluate_answer(const Request& request, const Progress& progress) {
-  const Camera camera = request.camera();
-  const CodeSet code = request.code(camera);
-  EvaluateOptions options;
-  options.trials = request.integer("trials", 2, 1'000'000'000, options.trials);
-  options.seed = seed_of(request);
-  options.validate();
+Answer evaluate_answer(const CodeArguments& coded, const EvaluateOptions& options,
+                       const Progress& progress) {
+  const Camera camera = coded.camera.load();
+  const CodeSet code = coded.code.load(camera);
   const std::array evaluated = {
       EvaluatedCode{evaluate(code, camera, options, progress), 0, {}, {}}};
   const DepthErrorReport& report = evaluated.front().error;
@@ -127,25 +102,24 @@ Answer evaluate_answer(const Request& request, const Progress& progress) {
   return answer;
 }
 
-Answer scene_answer(const Request& request, const Progress& progress) {
-  const Camera camera = request.camera();
-  const CodeSet code = request.code(camera);
-  const std::string name = request.text("scene", built_in_scene_names().front());
-  const int width = static_cast<int>(request.integer("width", 8, 1024, 160));
-  const int height = static_cast<int>(request.integer("height", 8, 1024, width * 3 / 4));
-  const std::string filter_word = request.text("filter", "off");
+Answer scene_answer(const CodeArguments& coded, const SceneArguments& arguments,
+                    const Progress& progress) {
+  const Camera camera = coded.camera.load();
+  const CodeSet code = coded.code.load(camera);
+  const int width = arguments.width, height = arguments.rows();
   std::optional<FilterOptions> filter_options;
-  if (filter_word != "off")
-    filter_options = FilterOptions::of(parse_word<FilterStrength>("filter strength", filter_word));
+  if (arguments.filter != "off")
+    filter_options =
+        FilterOptions::of(parse_word<FilterStrength>("filter strength", arguments.filter));
   CaptureOptions options;
   const OperatingPoint usual = capture_light(camera, options.reference_distance_m);
-  options.signal_e_per_s = request.optional_number("signal").value_or(usual.signal_e_per_s);
-  options.ambient_e_per_s = request.optional_number("ambient").value_or(usual.ambient_e_per_s);
-  options.seed = seed_of(request);
+  options.signal_e_per_s = arguments.signal.value_or(usual.signal_e_per_s);
+  options.ambient_e_per_s = arguments.ambient.value_or(usual.ambient_e_per_s);
+  options.seed = arguments.seed.value_or(options.seed);
   options.validate();
 
   const ProgressParts parts(progress, {30.0, filter_options ? 70.0 : 10.0});
-  const StagedScene scene = built_in_scene(name, width, height);
+  const StagedScene scene = built_in_scene(arguments.scene, width, height);
   const StagedCapture captured = capture(scene, code, camera, options, {}, parts[0]);
   const auto backend = cpu_backend(
       std::make_unique<Decoder>(make_decoding_table(ForwardModel(code, camera), camera)));
@@ -162,7 +136,7 @@ Answer scene_answer(const Request& request, const Progress& progress) {
   const SceneError error = scene_error(decoded.depth_m, truth, camera, DepthErrorKind::circular);
 
   Answer answer;
-  answer["scene"] = name;
+  answer["scene"] = arguments.scene;
   answer["width"] = width;
   answer["height"] = height;
   answer["signal_e_per_s"] = options.signal_e_per_s;
@@ -193,16 +167,16 @@ Answer scene_answer(const Request& request, const Progress& progress) {
   return answer;
 }
 
-Answer design_answer(const Request& request, const Progress& progress) {
-  const Camera camera = request.camera();
+Answer design_answer(const CameraArguments& camera_arguments, const DesignArguments& arguments,
+                     const Progress& progress) {
+  const Camera camera = camera_arguments.load();
   DesignOptions options;
-  options.method = parse_word<DesignMethod>("method", request.text("method", "best"));
-  const double effort = request.optional_number("effort").value_or(0.1);
-  options = with_effort(std::move(options), effort);
-  if (request.has("exposures"))
-    options.exposures = {static_cast<int>(request.integer("exposures", 1, 8))};
-  options.trials = static_cast<int>(request.integer("trials", 1000, 1'000'000, options.trials));
-  options.seed = seed_of(request);
+  options.method = arguments.method.value_or(options.method);
+  options = with_effort(std::move(options), arguments.effort.value_or(0.1));
+  if (arguments.exposures) options.exposures = {*arguments.exposures};
+  options.trials = static_cast<int>(std::min<std::int64_t>(
+      arguments.trials.value_or(options.trials), std::numeric_limits<int>::max()));
+  options.seed = arguments.seed.value_or(options.seed);
   options.validate();
   const DesignResult result = design(camera, options, progress);
   const Candidate& winner = result.winner();
@@ -218,39 +192,36 @@ Answer design_answer(const Request& request, const Progress& progress) {
   return answer;
 }
 
-Answer command_answer(const Request& request) {
-  const std::string what = request.text("what");
-  const std::string camera = camera_words(request);
-  std::vector<std::string> codes = request.texts("codes");
+Answer command_answer(const CameraArguments& camera, const CommandArguments& arguments,
+                      const SceneArguments& scene, const DesignArguments& design) {
+  const std::string name = arguments.camera_file.value_or(camera.built_in.value_or(""));
+  const std::string settings = settings_words(camera);
+  const std::string with = (name.empty() ? "" : " --camera " + shell_word(name)) + settings;
+  const std::string trials = option("--trials", design.trials) + option("--seed", design.seed);
+  std::vector<std::string> codes = arguments.codes;
   for (std::string& code : codes) code = shell_word(code);
   const auto first_code = [&] {
     require(!codes.empty(), "codes", "[]", "expected a code");
     return codes.front();
   };
   std::string command;
-  if (what == "camera") {
-    const std::string name = camera_name(request);
+  if (arguments.what == Command::camera) {
     command = "tofsmith cameras " +
-              shell_word(name.empty() ? std::string(default_camera_name) : name) +
-              settings_words(request);
-  } else if (what == "codes") {
-    command = "tofsmith codes " + first_code() + camera;
-  } else if (what == "evaluate") {
+              shell_word(name.empty() ? std::string(default_camera_name) : name) + settings;
+  } else if (arguments.what == Command::codes) {
+    command = "tofsmith codes " + first_code() + with;
+  } else if (arguments.what == Command::evaluate) {
     first_code();
-    command = fmt::format("tofsmith evaluate {}{}", fmt::join(codes, " "), camera) +
-              option(request, "trials", "--trials") + option(request, "seed", "--seed");
-  } else if (what == "scene") {
-    command = scene_commands(request, first_code(), camera);
-  } else if (what == "design") {
-    command = "tofsmith design" + camera;
-    if (request.has("method")) command += " --method " + shell_word(request.text("method"));
-    command += option(request, "exposures", "--exposures") + option(request, "effort", "--effort") +
-               option(request, "trials", "--trials") + option(request, "seed", "--seed") +
-               " -o design";
-  } else if (what == "export") {
-    command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), camera);
+    command = fmt::format("tofsmith evaluate {}{}{}", fmt::join(codes, " "), with, trials);
+  } else if (arguments.what == Command::scene) {
+    command = scene_commands(scene, first_code(), with);
+  } else if (arguments.what == Command::design) {
+    command = "tofsmith design" + with;
+    if (design.method) command += fmt::format(" --method {}", name_of(*design.method));
+    command += option("--exposures", design.exposures) + option("--effort", design.effort) +
+               trials + " -o design";
   } else {
-    reject("what", what, "expected camera, codes, evaluate, scene, design or export");
+    command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), with);
   }
   Answer answer;
   answer["command"] = command;
