@@ -40,7 +40,7 @@ CLI::Option* add_converted(CLI::App& command, const std::string& option, Value& 
 template <typename Single>
 inline constexpr bool is_option_value =
     HasWords<Single> || std::is_arithmetic_v<Single> || std::is_same_v<Single, std::string> ||
-    std::is_same_v<Single, std::filesystem::path>;
+    std::is_same_v<Single, std::filesystem::path> || NumberPair<Single>;
 
 /// Returns the option of a field: "--split-exposures".
 inline std::string option_of(std::string_view field) {
@@ -79,6 +79,17 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
   } else if constexpr (std::is_same_v<Single, std::filesystem::path>) {
     added = detail::add_converted(command, option, field.value, help,
                                   [](const std::string& text) { return Single(text); });
+  } else if constexpr (NumberPair<Single>) {
+    added = detail::add_converted(
+        command, option, field.value, help, [option](const std::string& text) {
+          Single pair;
+          auto [first, second] = fields_of(pair);
+          if (!read_number_pair(text, Single::separator, first.value, second.value) ||
+              !pair.is_valid())
+            throw CLI::ValidationError(option,
+                                       fmt::format("found {}; expected {}", text, Single::rule));
+          return pair;
+        });
   } else {
     added = command.add_option(option, field.value, help);
     if constexpr (std::is_arithmetic_v<Single>) {

@@ -42,26 +42,6 @@ bool are_many_scenes(const std::vector<std::string>& scenes) {
          std::filesystem::path(scenes.front()).extension() == ".txt";
 }
 
-/// Returns the range of a light level.
-/// @param what   "signal" or "ambient"
-/// @param range  "a:b"; "": fixed level
-/// @param level  fixed level; none: `usual`
-/// @throws UsageError for an invalid range, and for both a range and a level
-LightRange light_range(const std::string& what, const std::string& range,
-                       std::optional<double> level, double usual) {
-  const std::string option = fmt::format("--{}-range", what);
-  if (range.empty()) return {level.value_or(usual), level.value_or(usual)};
-  if (level) throw UsageError(fmt::format("{}: cannot be combined with --{}", option, what));
-  LightRange parsed;
-  if (!read_number_pair(range, ':', parsed.low_e_per_s, parsed.high_e_per_s) ||
-      parsed.broken_rule(what))
-    throw UsageError(
-        fmt::format("{}: found {}; expected a:b in e/s with 0 < a <= b, such as "
-                    "1e3:1e5",
-                    option, range));
-  return parsed;
-}
-
 struct SimulateArguments {
   std::vector<std::string> scenes;
   SceneSource scene;
@@ -69,17 +49,23 @@ struct SimulateArguments {
   TapArguments taps;
   std::string code;
   std::optional<double> signal_e_per_s, ambient_e_per_s;
-  std::string signal_range, ambient_range, shard;
   CaptureOptions options;
+  TrainingSetOptions set;  ///< without `capture`
   MultipathLightArguments returns;
   std::string stray_light;
   std::string output, truth, truth_near, truth_far;
 };
 
+void set_light(SimulateArguments& arguments, const Camera& camera) {
+  const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
+  arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(usual.signal_e_per_s);
+  arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(usual.ambient_e_per_s);
+}
+
 /// Simulates the scenes and prints a summary.
 /// @throws as write_training_set(); std::runtime_error if some scenes failed
-void make_training_set(const SimulateArguments& arguments, const TrainingSetOptions& options,
-                       const CodeSet& code, const Camera& camera, Session& session) {
+void make_training_set(const SimulateArguments& arguments, const CodeSet& code,
+                       const Camera& camera, Session& session) {
   const std::filesystem::path directory = arguments.output;
   const std::vector<TrainingScene> scenes = training_scenes(arguments.scenes);
   const auto load = [&](const TrainingScene& scene) {
@@ -91,8 +77,8 @@ void make_training_set(const SimulateArguments& arguments, const TrainingSetOpti
   const FreshDirectory fresh(directory);
   make_output_directory(directory);
   session.directory = directory;
-  const TrainingSetRun run = write_training_set(directory, scenes, code, camera, load, options,
-                                                terminal_progress("simulating"));
+  const TrainingSetRun run = write_training_set(directory, scenes, code, camera, load,
+                                                arguments.set, terminal_progress("simulating"));
   session.print_json({{"directory", directory.string()},
                       {"index", run.index.string()},
                       {"code", code.name()},
@@ -203,7 +189,7 @@ void check_truth(const SimulateArguments& arguments, const LoadedScene& scene,
                     camera.blur->pixel_samples));
 }
 
-void simulate_set(const SimulateArguments& arguments, Session& session) {
+void simulate_set(SimulateArguments& arguments, Session& session) {
   if (const std::filesystem::path output = arguments.output;
       output.extension() == ".npy" || output.extension() == ".npz")
     throw UsageError(
@@ -218,25 +204,18 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
   if (!arguments.stray_light.empty())
     throw UsageError("--stray-light: found several scenes; expected one");
   const Camera camera = arguments.camera.load();
-  const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
+  set_light(arguments, camera);
+  arguments.set.capture = arguments.options;
   make_training_set(
       arguments,
-      {.signal = light_range("signal", arguments.signal_range, arguments.signal_e_per_s,
-                             usual.signal_e_per_s),
-       .ambient = light_range("ambient", arguments.ambient_range, arguments.ambient_e_per_s,
-                              usual.ambient_e_per_s),
-       .capture = arguments.options,
-       .shard = parse_shard(arguments.shard)},
       load_camera_code(arguments.code, camera, arguments.taps.file_for({arguments.code})), camera,
       session);
 }
 
 /// Rejects options that are only valid with several scenes.
-void check_is_of_one_scene(const SimulateArguments& arguments) {
-  for (const auto& [option, value] : {std::pair("--signal-range", arguments.signal_range),
-                                      std::pair("--ambient-range", arguments.ambient_range),
-                                      std::pair("--shard", arguments.shard)})
-    if (!value.empty())
+void check_is_of_one_scene(const CLI::App& command) {
+  for (const char* option : {"--signal-range", "--ambient-range", "--shard"})
+    if (command.count(option) > 0)
       throw UsageError(
           fmt::format("{}: is only valid with a folder, a list (.txt) or several scenes", option));
 }
@@ -308,9 +287,9 @@ OutputPolicy check_outputs(const SimulateArguments& arguments, const CodeSet& re
   return policy;
 }
 
-void run(SimulateArguments& arguments, Session& session) {
+void run(SimulateArguments& arguments, const CLI::App& command, Session& session) {
   if (are_many_scenes(arguments.scenes)) return simulate_set(arguments, session);
-  check_is_of_one_scene(arguments);
+  check_is_of_one_scene(command);
   arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
   const CodeSet code =
@@ -318,9 +297,7 @@ void run(SimulateArguments& arguments, Session& session) {
   const OutputPolicy policy = check_outputs(arguments, code, session);
   const LoadedScene scene = scene_of(arguments.scene, camera);
   check_truth(arguments, scene, camera);
-  const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
-  arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(usual.signal_e_per_s);
-  arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(usual.ambient_e_per_s);
+  set_light(arguments, camera);
   const CapturedScene captured = capture_one(arguments, scene, code, camera);
   const RawFrames& raw = captured.capture.raw;
   write_raw_frames(arguments.output, raw, policy);
@@ -386,21 +363,10 @@ void add_simulate_command(CLI::App& app, Session& session) {
                    "the middle of its operating points)")
       ->check(number_from_0_on())
       ->transform(number_in("e/s"));
-  command
-      ->add_option("--signal-range", arguments->signal_range,
-                   "range a:b [e/s] from which the signal of each of several scenes is drawn "
-                   "log-uniformly")
-      ->group(for_experts);
-  command
-      ->add_option("--ambient-range", arguments->ambient_range,
-                   "range a:b [e/s] from which the ambient light of each of several scenes is "
-                   "drawn log-uniformly")
-      ->group(for_experts);
-  command
-      ->add_option("--shard", arguments->shard,
-                   "i/n: divide the list of scenes into n parts, and simulate only the i-th part; "
-                   "all parts can have the same output directory")
-      ->group(for_experts);
+  const FieldOptions set(*command, arguments->set);
+  set.add("signal_range")->excludes(command->get_option("--signal"))->group(for_experts);
+  set.add("ambient_range")->excludes(command->get_option("--ambient"))->group(for_experts);
+  set.add("shard")->group(for_experts);
   const FieldOptions options(*command, arguments->options);
   options.add("reference_distance_m", "--reference-distance")->group(for_experts);
   options.add("falloff", "!--no-falloff")->group(for_experts);
@@ -427,7 +393,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
           "also write the farthest distance from which each pixel receives light (docs/scenes.md)")
       ->group(for_experts);
   arguments->returns.add_to(*command);
-  command->callback([arguments, &session] { run(*arguments, session); });
+  command->callback([arguments, command, &session] { run(*arguments, *command, session); });
 }
 
 }  // namespace tofsmith::apps

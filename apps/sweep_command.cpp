@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "number_checks.hpp"
+#include "described_options.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/npy.hpp"
@@ -272,7 +272,8 @@ Page sweep_page(const WorkList& list, std::span<const SweepResult> results,
 constexpr std::int64_t max_items_unasked = 10'000'000;
 
 struct SweepArguments {
-  std::string sweep, store, report, shard;
+  std::string sweep, store, report;
+  SweepRunOptions options;
   std::vector<std::string> exports;
   bool status = false, yes = false;
 };
@@ -356,7 +357,6 @@ void print(const SweepArguments& arguments, std::int64_t items, const SweepCount
 void run(const SweepArguments& arguments, Session& session) {
   if (arguments.sweep.empty()) throw UsageError("SWEEP is required");
   if (arguments.store.empty()) throw UsageError("--store is required");
-  const SweepRunOptions options{.shard = parse_shard(arguments.shard)};
   const OutputPolicy policy = check_outputs(arguments, session);
   const WorkList list = read_list(arguments);
   const Progress progress = terminal_progress("sweep");
@@ -366,7 +366,7 @@ void run(const SweepArguments& arguments, Session& session) {
   SweepRun done;
   if (!arguments.status) {
     session.directory = arguments.store;
-    done = run_sweep(list, keys, store, options, progress);
+    done = run_sweep(list, keys, store, arguments.options, progress);
   }
   report(progress, 1.0, "done");
   const SweepCounts counts = store.count(keys);
@@ -413,8 +413,7 @@ void add_sweep_command(CLI::App& app, Session& session) {
       ->take_all()
       ->allow_extra_args(false);
   command->add_option("--report", arguments->report, "write a page (.html)");
-  command->add_option("--shard", arguments->shard,
-                      "i/n: compute only the i-th of n parts; sweep merge combines their stores");
+  add_field_option(*command, arguments->options, "shard");
   command->add_flag("--yes", arguments->yes, "allow more than 1e7 items");
 
   auto merging = std::make_shared<MergeArguments>();

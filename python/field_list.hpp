@@ -17,13 +17,16 @@ namespace tofsmith {
 
 namespace detail {
 
-/// "integer", "number", "choice", ...; of a list "integer[]"; of a described struct "table".
+/// "integer", "number", "choice", ...; of a list "integer[]"; of a pair "integer[2]"; of another
+/// described struct "table".
 template <typename Value>
 std::string type_of_field() {
   if constexpr (is_optional<Value>)
     return type_of_field<typename Value::value_type>();
   else if constexpr (is_list<Value>)
     return type_of_field<typename Value::value_type>() + "[]";
+  else if constexpr (NumberPair<Value>)
+    return type_of_field<NumberOf<Value>>() + "[2]";
   else if constexpr (HasFields<Value>)
     return "table";
   else if constexpr (std::is_same_v<Value, Estimate>)

@@ -20,6 +20,7 @@
 #include "tofsmith/simulate/motion_error.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
+#include "tofsmith/sweep/training_set.hpp"
 #include "tofsmith/waveforms/upload_script.hpp"
 
 namespace {
@@ -115,6 +116,7 @@ int main() {
       {"RobustnessOptions", fields_list<RobustnessOptions>()},
       {"SceneSource", fields_list<SceneSource>()},
       {"TimeFilterOptions", fields_list<TimeFilterOptions>()},
+      {"TrainingSetOptions", fields_list<TrainingSetOptions>()},
       {"UploadRequest", fields_list<UploadRequest>()},
       {"UploadSelection", fields_list<UploadSelection>()},
   };

@@ -35,12 +35,14 @@ PARTS = {"StreamOptions": ("DecodeRequest", {"layout", "dataset", "all_points", 
                                              "memory_mb"})}
 # Classes for functions with the fields of several structs.
 JOINED = {"TableOptions": ("CodeFileOptions", "DecodingTableOptions"),
+          "TrainingSetOptions": ("TrainingSetOptions", "CaptureOptions"),
           "UploadOptions": ("UploadSelection", "UploadRequest")}
 # Texts that name files.
 FILES = {"image", "ambient_image"}
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "choice": "str",
          "path": "Path", "integer[]": "Union[int, Sequence[int]]",
          "number[]": "Union[float, Sequence[float]]", "text[]": "Sequence[str]",
+         "integer[2]": "tuple[int, int]", "number[2]": "tuple[float, float]",
          "choice[]": "Sequence[str]"}
 
 

@@ -15,33 +15,13 @@ namespace tofsmith::python {
 
 namespace {
 
-void read_range(OptionReader& reader, const char* name, LightRange& range) {
-  std::vector<double> ends;
-  reader.value(name, ends);
-  if (ends.empty()) return;
-  if (ends.size() != 2) refuse(name, std::to_string(ends.size()) + " numbers", "(low, high)");
-  range = {ends[0], ends[1]};
-  range.validate(name);
-}
-
-LightRange always(double level_e_per_s) { return {level_e_per_s, level_e_per_s}; }
-
 TrainingSetOptions set_options(const py::dict& values, const Camera& camera) {
   TrainingSetOptions options;
-  OptionReader reader(values, "");
-  reader.fields(options.capture, {"signal_e_per_s", "ambient_e_per_s"});
-  const OperatingPoint usual = capture_light(camera, options.capture.reference_distance_m);
-  options.signal = always(usual.signal_e_per_s);
-  options.ambient = always(usual.ambient_e_per_s);
-  read_range(reader, "signal_range", options.signal);
-  read_range(reader, "ambient_range", options.ambient);
-  std::vector<int> shard;
-  reader.value("shard", shard);
-  reader.finish();
-  if (shard.size() == 2)
-    options.shard = {shard[0], shard[1]};
-  else if (!shard.empty())
-    refuse("shard", std::to_string(shard.size()) + " numbers", "(index, count)");
+  CaptureOptions& capture = options.capture;
+  OptionReader(values, "").fields(options).fields(capture).finish();
+  const OperatingPoint usual = capture_light(camera, capture.reference_distance_m);
+  capture.signal_e_per_s = usual.signal_e_per_s;
+  capture.ambient_e_per_s = usual.ambient_e_per_s;
   options.validate();
   return options;
 }

@@ -127,7 +127,9 @@ class OptionReader {
   template <typename Value>
   void read(const char* name, Value& field) {
     using Single = SingleValue<Value>;
-    if constexpr (HasFields<Value>) {
+    if constexpr (NumberPair<Single>) {
+      read_pair<Single>(name, field);
+    } else if constexpr (HasFields<Value>) {
       read_options(table(name), full_name(name), field);
     } else if constexpr (is_optional<Value> && HasFields<Single>) {
       const py::dict given = table(name);
@@ -145,6 +147,19 @@ class OptionReader {
     } else {
       value(name, field);
     }
+  }
+  template <NumberPair Pair, typename Value>
+  void read_pair(const char* name, Value& field) {
+    Pair pair;
+    auto [first, second] = fields_of(pair);
+    std::vector<NumberOf<Pair>> numbers;
+    value(name, numbers);
+    if (numbers.empty()) return;
+    if (numbers.size() != 2)
+      refuse(full_name(name), std::to_string(numbers.size()) + " numbers",
+             std::string("(") + first.name + ", " + second.name + ")");
+    first.value = numbers[0], second.value = numbers[1];
+    field = pair;
   }
   py::object take(const char* name);
   [[noreturn]] void wrong_type(const char* name, py::handle given, const std::string& needs) const;

@@ -20,7 +20,7 @@ from ._camera_fields import Lens
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
 from ._executor import Dispatcher, ExecutorLike, require_build
-from ._option_fields import CaptureOptions
+from ._option_fields import TrainingSetOptions
 from ._options import takes
 from ._scene import Scene, centred_lens, lens_dict, scene_named, scene_planes
 
@@ -107,20 +107,17 @@ def _write_on_executor(
     return training_set.write_index([outcomes[name] for name in names])
 
 
-@takes(CaptureOptions)
+@takes(TrainingSetOptions)
 def write_training_set(
     directory: Path,
     scenes: Mapping[str, SceneLike],
     code: CodeLike,
     camera: CameraLike,
     *,
-    signal_range: Optional[tuple[float, float]] = None,
-    ambient_range: Optional[tuple[float, float]] = None,
-    shard: Optional[tuple[int, int]] = None,
     executor: Optional[ExecutorLike] = None,
     threads: int = 1,
     progress: Progress = None,
-    **options: Unpack[CaptureOptions],
+    **options: Unpack[TrainingSetOptions],
 ) -> TrainingSetRun:
     """Captures and decodes every scene. Writes KEY.npz (raw, depth_m, true_depth_m, albedo) and
     KEY.json (parameters) for each, and an index, as `tofsmith simulate` for many scenes.
@@ -134,10 +131,7 @@ def write_training_set(
         Scenes without a lens use the camera's, or a view 60 degrees wide.
     code : CodeSet, name of a family or file
     camera : Camera or its name
-    signal_range, ambient_range : (float, float), optional
-        [e/s], drawn log-uniformly for every scene; None: the middle operating point.
-    shard : (index, count), optional
-        One part of the work, counted from 1, selected by the scenes' names.
+        Also specifies light without a range: its [optics], or its middle operating point.
     executor : concurrent.futures.Executor or a function that starts one, optional
         Writes the scenes, as in run_sweep(). Its workers must see the directory under the same
         path, and functions among the scenes must be picklable.
@@ -146,7 +140,7 @@ def write_training_set(
     progress : callable, optional
         Finished scenes are kept if it cancels.
     **options
-        As in CaptureOptions. Noise and light depend only on `seed` and the scene's name and
+        As in TrainingSetOptions. Noise and light depend only on `seed` and the scene's name and
         content.
 
     Raises
@@ -164,12 +158,7 @@ def write_training_set(
     >>> run = write_training_set("set", scenes, "hamiltonian-k4", "paper-10f0")  # doctest: +SKIP
     """
     known = camera_of(camera)
-    given: dict[str, Any] = {
-        **options,
-        "signal_range": None if signal_range is None else list(signal_range),
-        "ambient_range": None if ambient_range is None else list(ambient_range),
-        "shard": None if shard is None else list(shard),
-    }
+    given = dict(options)
     if not isinstance(scenes, Mapping) or not scenes:
         raise TypeError(f"scenes: got {_check.shown(scenes)}; needs a dict of names and scenes")
     names = sorted(_check.text(name, "scenes") for name in scenes)

@@ -177,22 +177,9 @@ bool SweepShard::holds(std::string_view key) const {
          static_cast<std::uint64_t>(index - 1);
 }
 
-std::optional<BrokenRule> SweepShard::broken_rule() const {
-  if (count < 1) return broken("shard.count", count, "must be >= 1");
-  if (index < 1 || index > count) return broken("shard.index", index, "must be in [1, count]");
-  return std::nullopt;
-}
-
-void SweepShard::validate() const { require(broken_rule()); }
-
-void SweepRunOptions::validate() const {
-  shard.validate();
-  require(batch_s > 0.0, "batch_s", batch_s, "must be > 0");
-}
-
 SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, SweepStore& store,
                    const SweepRunOptions& options, const Progress& progress) {
-  options.validate();
+  check_fields(options);
   SweepQueue queue(list, keys, store, options.shard, progress);
   BatchSize size(options.batch_s);
   SweepRun run;

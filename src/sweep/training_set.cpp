@@ -115,11 +115,10 @@ std::string identity_of(const TrainingScene& scene, const LoadedTrainingScene& l
   return fnv1a_128_hex(text);
 }
 
-double drawn(const LightRange& range, double uniform) {
-  if (range.low_e_per_s == range.high_e_per_s) return range.low_e_per_s;
-  const double level =
-      range.low_e_per_s * std::pow(range.high_e_per_s / range.low_e_per_s, uniform);
-  return std::clamp(level, range.low_e_per_s, range.high_e_per_s);
+double drawn(const std::optional<LightRange>& range, double level, double uniform) {
+  if (!range) return level;
+  const auto [low, high] = *range;
+  return low == high ? low : std::clamp(low * std::pow(high / low, uniform), low, high);
 }
 
 struct Example {
@@ -189,8 +188,8 @@ Example TrainingSetWriter::State::prepared(const TrainingScene& scene,
   CaptureOptions& capture = example.capture;
   capture.seed = key_number(identity);
   RandomStream stream(capture.seed, key_number(std::string_view(identity).substr(16)));
-  capture.signal_e_per_s = drawn(options.signal, stream.uniform());
-  capture.ambient_e_per_s = drawn(options.ambient, stream.uniform());
+  capture.signal_e_per_s = drawn(options.signal_range, capture.signal_e_per_s, stream.uniform());
+  capture.ambient_e_per_s = drawn(options.ambient_range, capture.ambient_e_per_s, stream.uniform());
   example.key = fnv1a_128_hex(fmt::format(
       "{}\n{}\n{} {} {} {} {}", identity, setup, capture.signal_e_per_s, capture.ambient_e_per_s,
       capture.reference_distance_m, capture.falloff, capture.frames));
@@ -286,23 +285,9 @@ TrainingSetRun TrainingSetWriter::write_index(
   return run;
 }
 
-std::optional<BrokenRule> LightRange::broken_rule(const std::string& which) const {
-  if (!(std::isfinite(low_e_per_s) && low_e_per_s >= 0.0))
-    return broken(which + ".low_e_per_s", low_e_per_s, "must be finite and >= 0");
-  if (!(std::isfinite(high_e_per_s) && high_e_per_s >= low_e_per_s))
-    return broken(which + ".high_e_per_s", high_e_per_s, "must be finite and >= low_e_per_s");
-  if (!(low_e_per_s > 0.0) && high_e_per_s != low_e_per_s)
-    return broken(which + ".low_e_per_s", low_e_per_s, "must be > 0 to draw levels");
-  return std::nullopt;
-}
-
-void LightRange::validate(const std::string& which) const { require(broken_rule(which)); }
-
 void TrainingSetOptions::validate() const {
-  signal.validate("signal");
-  ambient.validate("ambient");
+  check_fields(*this);
   capture.validate();
-  shard.validate();
 }
 
 TrainingSetRun write_training_set(const fs::path& directory, std::span<const TrainingScene> scenes,

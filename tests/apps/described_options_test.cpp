@@ -17,6 +17,17 @@ namespace tofsmith {
 enum class Heat { top, bottom, both };
 constexpr auto words_of(Heat /*any*/) { return word_list("top", "bottom", "both"); }
 
+struct Course {
+  int number = 1, count = 1;
+
+  static constexpr char separator = '/';
+  static constexpr std::string_view rule = "i/n, such as 1/3";
+  bool is_valid() const { return number <= count; }
+};
+auto fields_of(ConstOrNot<Course> auto& c) {
+  return std::tuple(Field("number", c.number), Field("count", c.count));
+}
+
 struct Oven {
   int trays = 4;
   double power_w = 900.0;
@@ -27,6 +38,7 @@ struct Oven {
   std::optional<Heat> night;
   std::vector<double> time_s = {60.0};
   std::string recipe;
+  Course course;
 };
 auto fields_of(ConstOrNot<Oven> auto& o) {
   return std::tuple(Field("trays", o.trays, closed(1, 9), Help{"number of trays"}, ByEffort{2}),
@@ -38,7 +50,8 @@ auto fields_of(ConstOrNot<Oven> auto& o) {
                     Field("heat", o.heat, Help{"where heat comes from"}),
                     Field("night", o.night, Help{"heat at night"}, IfAbsent{"none"}),
                     Field("time_s", o.time_s, at_least(0), Help{"times"}),
-                    Field("recipe", o.recipe, Help{"name of the recipe"}, OnlyWith{"grill"}));
+                    Field("recipe", o.recipe, Help{"name of the recipe"}, OnlyWith{"grill"}),
+                    Field("course", o.course, Help{"course i/n of the meal"}));
 }
 
 namespace apps {
@@ -80,7 +93,7 @@ TEST(DescribedOptions, AreParsedIntoTheirFields) {
   OvenCommand command;
   EXPECT_EQ(command.parse({"--trays", "7", "--power-w=800", "--door-m", "0.4", "--no-fan",
                            "--grill", "--heat", "top", "--night", "bottom", "--time-s", "1,2.5",
-                           "--recipe", "bread"}),
+                           "--recipe", "bread", "--course", "2/3"}),
             "");
   EXPECT_EQ(command.oven.trays, 7);
   EXPECT_EQ(command.oven.power_w, 800.0);
@@ -91,6 +104,8 @@ TEST(DescribedOptions, AreParsedIntoTheirFields) {
   EXPECT_EQ(command.oven.night, Heat::bottom);
   EXPECT_THAT(command.oven.time_s, ElementsAre(1.0, 2.5));
   EXPECT_EQ(command.oven.recipe, "bread");
+  EXPECT_EQ(command.oven.course.number, 2);
+  EXPECT_EQ(command.oven.course.count, 3);
 }
 
 TEST(DescribedOptions, KeepDefaultsUnlessGiven) {
@@ -110,6 +125,9 @@ TEST(DescribedOptions, RejectValuesOutsideTheirDescription) {
   EXPECT_THAT(refused({"--heat", "botom"}), HasSubstr("did you mean bottom?"));
   EXPECT_THAT(refused({"--night", "warm"}), HasSubstr("top,bottom,both"));
   EXPECT_EQ(refused({"--recipe", "bread"}), "--recipe requires --grill");
+  for (const char* course : {"2", "2/x", "3/2"})
+    EXPECT_EQ(refused({"--course", course}),
+              "--course: found " + std::string(course) + "; expected i/n, such as 1/3");
 }
 
 TEST(DescribedOptions, ShowDescriptionAndDefaultInHelp) {
@@ -147,6 +165,7 @@ TEST(DescribedOptions, AreInDocumentsKeysAndDescriptionsForOtherLanguages) {
   EXPECT_EQ(list.at(5).at("default"), "both");
   EXPECT_THAT(list.at(6).at("words"), ElementsAre("top", "bottom", "both"));
   EXPECT_EQ(list.at(7).at("type"), "number[]");
+  EXPECT_EQ(list.at(9).at("type"), "integer[2]");
 }
 
 }  // namespace

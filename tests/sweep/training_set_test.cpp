@@ -40,7 +40,7 @@ std::vector<TrainingScene> walls(const std::vector<std::string>& names) {
   return scenes;
 }
 
-const TrainingSetOptions dim = {.signal = {1e5, 1e6}, .ambient = {1e4, 1e4}};
+const TrainingSetOptions dim = {.signal_range = {{1e5, 1e6}}, .ambient_range = {{1e4, 1e4}}};
 
 TrainingSetRun write(const fs::path& directory, const std::vector<std::string>& names,
                      const TrainingSetOptions& options = dim) {
@@ -99,7 +99,7 @@ TEST(TrainingSet, RepeatsIncompleteItems) {
 TEST(TrainingSet, ContainsTheTrueDepthAndASimilarDecodedDepth) {
   const TemporaryDirectory directory;
   TrainingSetOptions bright = dim;
-  bright.signal = {1e9, 1e9};
+  bright.signal_range = {1e9, 1e9};
   write(directory.path(), {"2.5"}, bright);
   for (const auto& [name, content] : content_of(directory.path())) {
     if (!name.ends_with(".npz")) continue;
@@ -116,13 +116,22 @@ TEST(TrainingSet, OtherSettingsGiveOtherFiles) {
   write(directory.path(), {"1"});
   std::vector<TrainingSetOptions> others(5, dim);
   others[0].capture.seed = 2;
-  others[1].signal.high_e_per_s = 2e6;
-  others[2].ambient = {2e4, 2e4};
+  others[1].signal_range->high_e_per_s = 2e6;
+  others[2].ambient_range = {2e4, 2e4};
   others[3].capture.falloff = false;
   others[4].capture.frames = 2;
   for (const TrainingSetOptions& other : others)
     EXPECT_EQ(write(directory.path(), {"1"}, other).written, 1);
   EXPECT_EQ(write(directory.path(), {"1"}).kept, 1);
+}
+
+TEST(TrainingSet, WithoutARangeTheLightIsThatOfTheCapture) {
+  const TemporaryDirectory directory;
+  write(directory.path(), {"1"});
+  TrainingSetOptions fixed = dim;
+  fixed.ambient_range.reset();
+  fixed.capture.ambient_e_per_s = 1e4;
+  EXPECT_EQ(write(directory.path(), {"1"}, fixed).kept, 1);
 }
 
 TEST(TrainingSet, AnInvalidSceneDoesNotAffectOthers) {
@@ -136,12 +145,12 @@ TEST(TrainingSet, AnInvalidSceneDoesNotAffectOthers) {
 TEST(TrainingSet, RejectsInvalidRanges) {
   const TemporaryDirectory directory;
   TrainingSetOptions bad = dim;
-  bad.signal = {2.0, 1.0};
+  bad.signal_range = {2.0, 1.0};
   EXPECT_THAT([&] { write(directory.path(), {"1"}, bad); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("signal.high_e_per_s")));
-  bad.signal = {0.0, 1.0};
+              ThrowsMessage<std::invalid_argument>(HasSubstr("signal_range = 2:1; must be a:b")));
+  bad.signal_range = {0.0, 1.0};
   EXPECT_THAT([&] { write(directory.path(), {"1"}, bad); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("must be > 0")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("signal_range = 0:1")));
 }
 
 TEST(TrainingScenes, AreReadFromFoldersAndLists) {

@@ -111,6 +111,15 @@ concept HasFields = requires(Struct& its) {
   fields_of(its);
 };
 
+/// Two numbers that users write as a pair, such as "3/8" on the command line and (3, 8) in Python:
+/// a described struct with a `separator`, the `rule` of valid pairs, and is_valid().
+template <typename Struct>
+concept NumberPair = HasFields<Struct> && requires {
+  Struct::separator;
+};
+template <NumberPair Pair>
+using NumberOf = std::remove_cvref_t<decltype(std::get<0>(fields_of(std::declval<Pair&>())).value)>;
+
 namespace detail {
 template <typename Struct, typename Listed>
 inline constexpr bool lists_all = false;
@@ -189,6 +198,11 @@ void check(const char* name, const Value& value, const Range& range, std::string
     for (const auto& item : value) check(name, item, range, owner, "each must be ");
   } else if constexpr (is_optional<Value>) {
     if (value) check(name, *value, range, owner);
+  } else if constexpr (NumberPair<Value>) {
+    const auto [first, second] = fields_of(value);
+    require(value.is_valid(), std::string(owner) + name,
+            describe(first.value) + Value::separator + describe(second.value),
+            "must be " + std::string(Value::rule));
   }
 }
 }  // namespace detail
@@ -200,7 +214,7 @@ std::string_view Field<Value>::unit() const {
   return is_number ? unit_of_key(name) : std::string_view();
 }
 
-/// Checks the range of every field; struct members check themselves.
+/// Checks the range of every field; struct members other than pairs check themselves.
 /// @param owner  prepended to names in errors: "OptimizeOptions::"
 /// @throws InvalidArgument "OptimizeOptions::starts = -3; must be >= 1"
 template <typename Struct>

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/hidden.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/design/design.hpp"
@@ -196,13 +196,15 @@ struct SweepShard {
   int index = 1;  ///< 1 to count
   int count = 1;
 
+  static constexpr char separator = '/';
+  static constexpr std::string_view rule = "i/n with i in 1 to n, such as 3/8";
+  bool is_valid() const { return index >= 1 && index <= count; }
   /// Returns true if an item belongs to this part, which depends only on its key.
   bool holds(std::string_view key) const;
-  /// Violated rule, if any.
-  std::optional<BrokenRule> broken_rule() const;
-  /// @throws InvalidArgument with broken_rule()
-  void validate() const;
 };
+auto fields_of(ConstOrNot<SweepShard> auto& s) {
+  return std::tuple(Field("index", s.index), Field("count", s.count));
+}
 
 /// An item claimed by this process.
 struct ClaimedItem {
@@ -251,11 +253,15 @@ class SweepQueue {
 
 struct SweepRunOptions {
   SweepShard shard;
-  double batch_s = 1.0;  ///< work claimed at a time, > 0; lost if killed
-
-  /// @throws std::invalid_argument
-  void validate() const;
+  double batch_s = 1.0;
 };
+auto fields_of(ConstOrNot<SweepRunOptions> auto& o) {
+  return std::tuple(
+      Field("shard", o.shard,
+            Help{"part i/n: compute only the i-th of n parts; sweep merge combines their stores"}),
+      Field("batch_s", o.batch_s, above(0).or_infinity(),
+            Help{"computing time of the items claimed at a time; lost if killed"}));
+}
 
 struct SweepRun {
   std::int64_t computed = 0;          ///< finished by this run

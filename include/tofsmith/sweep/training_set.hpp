@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -32,20 +33,40 @@ std::vector<TrainingScene> training_scenes(std::span<const std::string> inputs);
 struct LightRange {
   double low_e_per_s = 0.0, high_e_per_s = 0.0;
 
-  /// Returns the violated rule; none if 0 <= low <= high < infinity, and low > 0 if they differ.
-  /// @param which  name in errors
-  std::optional<BrokenRule> broken_rule(const std::string& which) const;
-  void validate(const std::string& which) const;
+  static constexpr char separator = ':';
+  static constexpr std::string_view rule = "a:b in e/s with 0 < a <= b, such as 1e3:1e5";
+  bool is_valid() const {
+    return low_e_per_s > 0.0 ? low_e_per_s <= high_e_per_s && std::isfinite(high_e_per_s)
+                             : low_e_per_s == 0.0 && high_e_per_s == 0.0;
+  }
 };
+auto fields_of(ConstOrNot<LightRange> auto& r) {
+  return std::tuple(Field("low_e_per_s", r.low_e_per_s), Field("high_e_per_s", r.high_e_per_s));
+}
 
 struct TrainingSetOptions {
-  LightRange signal, ambient;
-  CaptureOptions capture;  ///< signal and ambient are ignored; seed of the whole set
-  SweepShard shard;        ///< by names
+  std::optional<LightRange> signal_range, ambient_range;  ///< override the light of `capture`
+  SweepShard shard;
+  CaptureOptions capture;  ///< seed of the whole set
 
   /// @throws std::invalid_argument
   void validate() const;
 };
+auto fields_of(ConstOrNot<TrainingSetOptions> auto& o) {
+  return std::tuple(
+      Field("signal_range", o.signal_range,
+            Help{"range a:b [e/s] from which the signal of each of several scenes is drawn "
+                 "log-uniformly"},
+            IfAbsent{"the same for all scenes"}),
+      Field("ambient_range", o.ambient_range,
+            Help{"range a:b [e/s] from which the ambient light of each of several scenes is drawn "
+                 "log-uniformly"},
+            IfAbsent{"the same for all scenes"}),
+      Field("shard", o.shard,
+            Help{"part i/n: simulate only the i-th of n parts of the scenes; all parts can have "
+                 "the same output directory"}),
+      Field("capture", o.capture, FieldMark::apart));
+}
 
 struct TrainingSetRun {
   std::int64_t scenes = 0;             ///< in this shard
