@@ -9,7 +9,6 @@
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/io/depth_file.hpp"
 
 namespace tofsmith::apps {
 
@@ -64,25 +63,10 @@ void MultipathLightArguments::add_to(CLI::App& command) {
                                            "signal of a pixel is distributed: (T,) for all "
                                            "pixels, or (H,W,T)")
                                ->group(for_experts);
-  command
-      .add_option("--transient-bin-s", transient_bin_s_, "duration of one bin of --transient [s]")
-      ->check(positive_number())
-      ->needs(transient)
-      ->group(for_experts);
-  command
-      .add_option("--transient-origin", transient_origin_,
-                  "bin of --transient at the depth of the pixel: the first one, or the peak")
-      ->check(one_of<TransientOrigin>())
-      ->capture_default_str()
-      ->needs(transient)
-      ->group(for_experts);
-  command
-      .add_option("--transient-background", transient_background_,
-                  "constant background to subtract from each histogram before use")
-      ->check(one_of({"none", "median"}))
-      ->capture_default_str()
-      ->needs(transient)
-      ->group(for_experts);
+  const FieldOptions options(command, transients_);
+  options.add("bin_s", "--transient-bin-s")->default_str("")->needs(transient)->group(for_experts);
+  options.add("origin", "--transient-origin")->needs(transient)->group(for_experts);
+  options.add("background", "--transient-background")->needs(transient)->group(for_experts);
   CLI::Option* bounces = command
                              .add_option("--bounces", bounces_,
                                          "1: add light reflected by one other surface of the "
@@ -113,7 +97,7 @@ SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera
         "of them, because --transient contains all light of a pixel");
   if (!returns_.empty() && !multipath_.empty())
     throw UsageError("--multipath-file: found together with --multipath; expected one of them");
-  if (!transient_.empty() && !transient_bin_s_)
+  if (!transient_.empty() && transients_.bin_s == 0.0)
     throw UsageError(
         "--transient: found no --transient-bin-s; expected the duration of one bin in seconds");
   SceneLight light;
@@ -127,11 +111,7 @@ SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera
   if (bounces_ > 0) light.returns = bounced(loaded, camera);
   if (tail_m_) light.tail = ExponentialTail{*tail_m_, tail_ratio_};
   if (!transient_.empty())
-    light.transients = read_transients(
-        transient_, scene.height(), scene.width(),
-        {.bin_s = *transient_bin_s_,
-         .origin = parse_word<TransientOrigin>("--transient-origin", transient_origin_),
-         .subtract_median = transient_background_ == "median"});
+    light.transients = read_transients(transient_, scene.height(), scene.width(), transients_);
   light.validate(scene, camera);
   return light;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene_source.hpp"
+#include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/simulate/capture.hpp"
 
 namespace tofsmith::apps {
@@ -33,10 +34,9 @@ class MultipathLightArguments {
   std::optional<double> tail_m_;
   double tail_ratio_ = 0.3;
   std::string returns_, transient_, truth_;
-  std::optional<double> transient_bin_s_;
+  TransientFileOptions transients_;
   int bounces_ = 0;
   BounceOptions bounce_;
-  std::string transient_origin_ = "first", transient_background_ = "none";
 };
 
 }  // namespace tofsmith::apps

@@ -118,7 +118,9 @@ void read_scene_image(Input bytes) {
   if (wanted == 4) read_multipath_returns(path, 2, 3);
   if (wanted == 5)
     read_transients(path, 2, 3,
-                    {.bin_s = 1e-10, .origin = TransientOrigin::peak, .subtract_median = true});
+                    {.bin_s = 1e-10,
+                     .origin = TransientOrigin::peak,
+                     .background = TransientBackground::median});
 }
 
 std::vector<Bytes> scene_image_seeds() {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/words.hpp"
 #include "tofsmith/io/atomic_file.hpp"
@@ -53,13 +54,24 @@ enum class TransientOrigin {
 };
 constexpr auto words_of(TransientOrigin /*any*/) { return word_list("first", "peak"); }
 
+/// Background that is subtracted from each histogram, which is clipped at 0.
+enum class TransientBackground { none, median };
+constexpr auto words_of(TransientBackground /*any*/) { return word_list("none", "median"); }
+
 /// Interpretation of transients.
 struct TransientFileOptions {
-  double bin_s = 0.0;  ///< duration of a bin, > 0
+  double bin_s = 0.0;
   TransientOrigin origin = TransientOrigin::first;
-  /// Subtracts the median of each histogram and clips at 0.
-  bool subtract_median = false;
+  TransientBackground background = TransientBackground::none;
 };
+auto fields_of(ConstOrNot<TransientFileOptions> auto& o) {
+  return std::tuple(
+      Field("bin_s", o.bin_s, above(0), Help{"duration of one bin of --transient"}),
+      Field("origin", o.origin,
+            Help{"bin of --transient at the depth of the pixel: the first one, or the peak"}),
+      Field("background", o.background,
+            Help{"constant background to subtract from each histogram before use"}));
+}
 
 /// Reads transients from an NPY: one histogram (T) for all pixels, or (H, W, T).
 /// @throws IoError for another shape, or with the index of a bin that is negative or not finite

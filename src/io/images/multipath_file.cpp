@@ -82,8 +82,7 @@ MultipathReturns read_multipath_returns(const std::filesystem::path& path, int h
 
 std::vector<Transient> read_transients(const std::filesystem::path& path, int height, int width,
                                        const TransientFileOptions& options) {
-  require(std::isfinite(options.bin_s) && options.bin_s > 0.0, "TransientFileOptions::bin_s",
-          options.bin_s, "must be finite and > 0");
+  check_fields(options, "TransientFileOptions::");
   const NpyArray array = read_npy(path);
   const NpyShape& shape = array.shape();
   const auto rows = static_cast<std::size_t>(height), columns = static_cast<std::size_t>(width);
@@ -103,7 +102,7 @@ std::vector<Transient> read_transients(const std::filesystem::path& path, int he
     light.assign(values.begin() + static_cast<std::ptrdiff_t>(i * bins),
                  values.begin() + static_cast<std::ptrdiff_t>((i + 1) * bins));
     check_bins(light, path, i);
-    if (options.subtract_median) subtract_median(light);
+    if (options.background == TransientBackground::median) subtract_median(light);
     std::transform(light.begin(), light.end(), sum.begin(), sum.begin(), std::plus());
   }
   const double bin_m = 0.5 * speed_of_light_m_per_s * options.bin_s;
