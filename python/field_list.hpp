@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/statistics.hpp"
@@ -33,6 +34,10 @@ std::string type_of_field() {
     return "estimate";
   else if constexpr (std::is_same_v<Value, Image<float>>)
     return "image";
+  else if constexpr (std::is_base_of_v<Eigen::EigenBase<Value>, Value>)
+    return "matrix";
+  else if constexpr (std::is_same_v<Value, ImpulseResponse>)
+    return "response";
   else if constexpr (std::is_same_v<Value, bool>)
     return "boolean";
   else if constexpr (std::is_integral_v<Value>)

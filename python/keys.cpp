@@ -84,6 +84,9 @@ nlohmann::ordered_json results() {
       result<DeadPixels>("DeadPixels", "Number of excluded pixels by reason, each counted once"),
       result<HarmonicRatio>("HarmonicRatio",
                             "Amplitudes of one harmonic of a measured table and of an ideal code"),
+      result<IdealCodeFit>("IdealCodeFit", "An ideal code fitted to a measured table"),
+      result<ParametricResponse>("ParametricResponse", "A parametric response fitted to a record"),
+      result<TrainingSetRun>("TrainingSetRun", "Result of write_training_set()"),
       result<SensorDrift>(
           "SensorDrift",
           "Part of the drift that follows the temperature of the sensor; see TemperatureDrift"),

@@ -19,23 +19,26 @@ HEADER = '''# Made by make_result_fields.py from the descriptions of results in 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path as FilePath
 from typing import Optional
 
 import numpy as np
 import numpy.typing as npt
 
+from ._camera_fields import ImpulseResponse
 from ._check import FloatArray
 from ._results import Estimate
 '''
 
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "choice": "str",
          "estimate": "Estimate", "integer[]": "list[int]", "number[]": "list[float]",
-         "text[]": "list[str]", "estimate[]": "list[Estimate]", "image": "npt.NDArray[np.float32]"}
+         "text[]": "list[str]", "estimate[]": "list[Estimate]", "image": "npt.NDArray[np.float32]",
+         "matrix": "FloatArray", "response": "ImpulseResponse", "path": "FilePath"}
 # Types of fields of structs in a list: one array or list per field.
 COLUMNS = {"boolean": "npt.NDArray[np.bool_]", "integer": "npt.NDArray[np.int64]",
            "number": "FloatArray", "estimate": "FloatArray", "text": "list[str]"}
 # Types in documentation, if different.
-WORDS = {"FloatArray": "ndarray", "npt.NDArray[np.int64]": "ndarray of int64",
+WORDS = {"FloatArray": "ndarray", "FilePath": "pathlib.Path", "npt.NDArray[np.int64]": "ndarray of int64",
          "npt.NDArray[np.float32]": "ndarray of float32"}
 
 

@@ -30,19 +30,8 @@ py::dict read_record(const std::string& path, const py::dict& values) {
   return record_dict(read_response_record(path, options));
 }
 
-py::dict fit_dict(const ParametricResponse& fit) {
-  py::dict dict;
-  dict["response"] = impulse_response_dict(fit.response);
-  dict["parameter_hz"] = pair_of(fit.parameter_hz);
-  dict["bandwidth_hz"] = pair_of(fit.bandwidth_hz);
-  dict["residual_rms"] = fit.residual_rms;
-  dict["fit"] = adopt(Eigen::VectorXd(fit.fit));
-  return dict;
-}
-
 py::dict response_dict(const CalibratedResponse& found) {
-  py::list fits, peaks;
-  for (const ParametricResponse& fit : found.fits) fits.append(fit_dict(fit));
+  py::list peaks;
   for (const ResponsePeak& peak : found.peaks)
     peaks.append(py::make_tuple(peak.time_s, peak.height));
   py::dict dict;
@@ -56,7 +45,7 @@ py::dict response_dict(const CalibratedResponse& found) {
   dict["response"] = impulse_response_dict(found.response);
   dict["response_centre_s"] = found.response_centre_s;
   dict["bandwidth_hz"] = pair_of(found.bandwidth_hz);
-  dict["fits"] = fits;
+  dict["fits"] = object_of(found.fits);
   dict["fit_is_good"] = found.fit_is_good();
   dict["peaks"] = peaks;
   dict["record"] = record_dict(found.record);

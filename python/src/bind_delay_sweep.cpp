@@ -88,23 +88,6 @@ py::dict correlation_dict(const CalibratedCorrelation& found) {
   return dict;
 }
 
-py::dict ideal_fit_dict(const IdealCodeFit& fit) {
-  py::dict dict;
-  dict["code"] = fit.code;
-  dict["delay_periods"] = fit.delay_periods;
-  dict["reversed"] = fit.reversed;
-  dict["inverted"] = fit.inverted;
-  dict["exposure"] = fit.exposure;
-  dict["scale"] = fit.scale;
-  dict["ideal_residual"] = fit.ideal_residual;
-  dict["residual"] = fit.residual;
-  dict["response"] = impulse_response_dict(fit.response);
-  dict["parameter_hz"] = pair_of(fit.parameter_hz);
-  dict["fitted"] = adopt(Eigen::MatrixXd(fit.fitted));
-  dict["harmonics"] = object_of(fit.harmonics);
-  return dict;
-}
-
 std::vector<IdealCodeFit> fits_of(const CalibratedCorrelation& found, const Camera& camera,
                                   const std::optional<std::vector<CodeSet>>& codes) {
   const py::gil_scoped_release release;
@@ -252,7 +235,7 @@ void bind_delay_sweep(py::module_& module) {
     write_float_image(path, to_image(map, name.c_str()), name, policy_of(overwrite));
   });
   py::class_<IdealCodeFit>(module, "IdealCodeFit")
-      .def("fields", &ideal_fit_dict)
+      .def("fields", &fields_dict<IdealCodeFit>)
       .def("camera",
            [](const IdealCodeFit& fit, const Camera& camera, const CalibratedCorrelation& found) {
              return with_fit(camera, fit, found.tap_mismatch);

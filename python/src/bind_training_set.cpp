@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "bindings.hpp"
+#include "field_dicts.hpp"
 #include "options.hpp"
 #include "progress.hpp"
-#include "reports.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
@@ -48,16 +48,6 @@ std::vector<TrainingScene> scenes_of(const std::vector<std::string>& names) {
   return scenes;
 }
 
-py::dict run_dict(const TrainingSetRun& run) {
-  py::dict dict;
-  dict["scenes"] = run.scenes;
-  dict["written"] = run.written;
-  dict["kept"] = run.kept;
-  dict["failures"] = run.failures;
-  dict["index"] = run.index.string();
-  return dict;
-}
-
 py::dict write_set(const std::string& directory, const std::vector<std::string>& names,
                    const py::object& load, const CodeSet& code, const Camera& camera,
                    const py::dict& values, const py::object& callback) {
@@ -70,7 +60,7 @@ py::dict write_set(const std::string& directory, const std::vector<std::string>&
         [&](const TrainingScene& scene) { return load_scene(load, scene.name); }, options,
         progress);
   });
-  return run_dict(run);
+  return fields_dict(run);
 }
 
 /// Name, entry of the index, problem, and whether the scene was written by this call.
@@ -112,7 +102,7 @@ class BoundTrainingSet {
       scenes.push_back({name, name});
       outcomes.push_back({entry, problem, is_new});
     }
-    return run_dict(writer_.write_index(scenes, outcomes));
+    return fields_dict(writer_.write_index(scenes, outcomes));
   }
 
  private:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <string>
 #include <vector>
@@ -85,6 +86,10 @@ py::object object_of(const Value& value) {
     return items;
   } else if constexpr (std::is_same_v<Value, Image<float>>) {
     return adopt(Image<float>(value));
+  } else if constexpr (std::is_base_of_v<Eigen::EigenBase<Value>, Value>) {
+    return adopt(Value(value));
+  } else if constexpr (std::is_same_v<Value, ImpulseResponse>) {
+    return impulse_response_dict(value);
   } else if constexpr (std::is_enum_v<Value>) {
     return py::str(std::string(name_of(value)));
   } else {

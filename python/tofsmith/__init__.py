@@ -145,7 +145,6 @@ from ._report_pages import write_evaluation_report, write_report
 from ._reports import DepthErrorReport, GeneratorLoss, OperatingMultipathReport
 from ._response_calibration import (
     CalibratedResponse,
-    ParametricResponse,
     ResponseRecord,
     calibrate_impulse_response,
     read_response_record,
@@ -159,10 +158,12 @@ from ._result_fields import (
     MeasurementReport,
     MotionErrors,
     MotionReport,
+    ParametricResponse,
     PhotonTransferPoint,
     RobustnessReport,
     SearchRecord,
     SensorDrift,
+    TrainingSetRun,
     WrongShares,
 )
 from ._results import Estimate
@@ -182,7 +183,7 @@ from ._scene import (
 )
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
 from ._tofsmith import Interrupted
-from ._training_set import TrainingSetRun, write_training_set
+from ._training_set import write_training_set
 from ._waveform import Waveform
 
 __version__: str = _tofsmith.version

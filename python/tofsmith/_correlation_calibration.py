@@ -14,14 +14,12 @@ import numpy.typing as npt
 
 from . import _check, _result_fields, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
-from ._camera_fields import ImpulseResponse
 from ._check import FloatArray, Path, Progress
 from ._code import CodeLike, code_of
 from ._decoding_table import DecodingTable
 from ._depth_calibration import CalibratedDepth, calibrate_depth
 from ._option_fields import DelaySweepOptions
 from ._options import takes
-from ._result_fields import HarmonicRatio
 from ._results import Estimate, calibrated
 
 
@@ -290,44 +288,8 @@ def calibrate_correlation(
 
 
 @dataclass(frozen=True)
-class IdealCodeFit:
-    """An ideal code fitted to a measured table.
-
-    Attributes
-    ----------
-    code : str
-    delay_periods : float
-        Delay of the measured curves relative to the code.
-    reversed, inverted : bool
-        Delay runs in the opposite direction; all signs are opposite.
-    exposure : list of int
-        Exposure of the code for each measured exposure.
-    scale : float
-        Raw numbers per unit of the code's correlation.
-    ideal_residual, residual : float
-        Rms residual relative to the rms of the table, without and with a response.
-    response : ImpulseResponse
-        Response of each arm; both are equal.
-    parameter_hz : Estimate
-        Its f_max_hz or cutoff_hz [Hz].
-    fitted : ndarray, shape (N, K)
-        Without means.
-    harmonics : list of HarmonicRatio
-        1 to 16.
-    """
-
-    code: str
-    delay_periods: float
-    reversed: bool
-    inverted: bool
-    exposure: list[int]
-    scale: float
-    ideal_residual: float
-    residual: float
-    response: ImpulseResponse
-    parameter_hz: Estimate
-    fitted: FloatArray
-    harmonics: list[HarmonicRatio]
+class IdealCodeFit(_result_fields.IdealCodeFit):
+    __doc__ = _result_fields.IdealCodeFit.__doc__
     _handle: _tofsmith.IdealCodeFit = field(repr=False, compare=False)
     _found: _tofsmith.CalibratedCorrelation = field(repr=False, compare=False)
 

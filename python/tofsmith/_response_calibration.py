@@ -13,9 +13,10 @@ import numpy.typing as npt
 from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._camera_fields import ImpulseResponse
-from ._check import FloatArray, Path
+from ._check import Path
 from ._option_fields import ResponseCalibrationOptions, ResponseRecordOptions
 from ._options import takes
+from ._result_fields import ParametricResponse
 from ._results import Estimate, calibrated
 
 
@@ -41,29 +42,6 @@ class ResponseRecord:
     start_time_s: float = 0.0
     counts: bool = False
     notes: list[str] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class ParametricResponse:
-    """A parametric response fitted to a record.
-
-    Attributes
-    ----------
-    response : ImpulseResponse
-        hann, gaussian or lowpass.
-    parameter_hz, bandwidth_hz : Estimate
-        Its f_max_hz or cutoff_hz, and its -3 dB bandwidth [Hz].
-    residual_rms : float
-        Rms of the record minus the fit, relative to the height of the record.
-    fit : ndarray, shape (T,)
-        At the times of the record, in its units.
-    """
-
-    response: ImpulseResponse
-    parameter_hz: Estimate
-    bandwidth_hz: Estimate
-    residual_rms: float
-    fit: FloatArray
 
 
 @dataclass(frozen=True)

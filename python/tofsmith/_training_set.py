@@ -8,8 +8,6 @@ import functools
 import os
 import pickle
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path as FilePath
 from typing import Any, Optional, Union, Unpack
 
 import numpy.typing as npt
@@ -22,31 +20,11 @@ from ._code import CodeLike, code_of
 from ._executor import Dispatcher, ExecutorLike, require_build
 from ._option_fields import TrainingSetOptions
 from ._options import takes
+from ._result_fields import TrainingSetRun
 from ._scene import Scene, centred_lens, lens_dict, scene_named, scene_planes
 
 #: As in capture(), or a function that returns a scene when called.
 SceneLike = Union[Scene, str, npt.NDArray[Any], Callable[[], Any]]
-
-
-@dataclass(frozen=True)
-class TrainingSetRun:
-    """Result of write_training_set().
-
-    Attributes
-    ----------
-    scenes, written, kept : int
-        Scenes in this shard, written in this run, and already finished.
-    failures : list of str
-        "name: problem" of scenes that could not be simulated.
-    index : pathlib.Path
-        Index of all finished scenes.
-    """
-
-    scenes: int
-    written: int
-    kept: int
-    failures: list[str]
-    index: FilePath
 
 
 #: Name, entry of the index, problem, and whether it was written in this run.
@@ -174,5 +152,4 @@ def write_training_set(
         _check.whole(threads, "threads", 0, 65536)
         plan = (os.path.abspath(folder), known_code, known, given)
         values = _write_on_executor(plan, scenes, names, executor, threads, callback)
-    values["index"] = FilePath(values["index"])
     return TrainingSetRun(**values)

@@ -387,18 +387,36 @@ auto fields_of(ConstOrNot<HarmonicRatio> auto& h) {
 /// An ideal code fitted to a measured table.
 struct IdealCodeFit {
   std::string code;
-  double delay_periods = 0.0;   ///< of the measured curves
-  bool reversed = false;        ///< chi(-z) was measured
-  bool inverted = false;        ///< all signs are opposite
-  std::vector<int> exposure;    ///< of the code for each measured exposure
-  double scale = 1.0;           ///< raw numbers per unit of the code's correlation
-  double ideal_residual = 0.0;  ///< residual rms / rms of the table, without impulse responses
-  double residual = 0.0;        ///< the same with `response`
-  ImpulseResponse response;     ///< of each arm; none if it does not improve the fit
-  Estimate parameter_hz;        ///< f_max_hz or cutoff_hz of `response`
-  Eigen::MatrixXd fitted;       ///< (N, K), without means
-  std::vector<HarmonicRatio> harmonics;  ///< 1 to 16
+  double delay_periods = 0.0;
+  bool reversed = false;
+  bool inverted = false;
+  std::vector<int> exposure;
+  double scale = 1.0;
+  double ideal_residual = 0.0;
+  double residual = 0.0;
+  ImpulseResponse response;
+  Estimate parameter_hz;
+  Eigen::MatrixXd fitted;
+  std::vector<HarmonicRatio> harmonics;
 };
+auto fields_of(ConstOrNot<IdealCodeFit> auto& f) {
+  return std::tuple(
+      Field("code", f.code),
+      Field("delay_periods", f.delay_periods, Help{"delay of the measured curves"}),
+      Field("reversed", f.reversed, Help{"delay runs in the opposite direction"}),
+      Field("inverted", f.inverted, Help{"all signs are opposite"}),
+      Field("exposure", f.exposure, Help{"exposure of the code for each measured exposure"}),
+      Field("scale", f.scale, Help{"raw numbers per unit of the code's correlation"}),
+      Field("ideal_residual", f.ideal_residual,
+            Help{"rms residual relative to the rms of the table, without impulse responses"}),
+      Field("residual", f.residual, Help{"the same with `response`"}),
+      Field("response", f.response,
+            Help{"response of each arm; none if it does not improve the fit"}),
+      Field("parameter_hz", f.parameter_hz, FieldMark::as_object,
+            Help{"`f_max_hz` or `cutoff_hz` of `response`"}),
+      Field("fitted", f.fitted, Help{"fitted table, (N, K), without means"}),
+      Field("harmonics", f.harmonics, FieldMark::as_object, Help{"harmonics 1 to 16"}));
+}
 
 /// Fits codes to a measured table, and returns the fits by ascending residual. Parameters are
 /// scale, delay, direction, sign, the order of exposures, and one symmetric impulse response for

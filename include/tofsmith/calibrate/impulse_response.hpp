@@ -77,12 +77,22 @@ auto fields_of(ConstOrNot<ResponseCalibrationOptions> auto& o) {
 
 /// A parametric response fitted to a record.
 struct ParametricResponse {
-  ImpulseResponse response;   ///< hann, gaussian or lowpass
-  Estimate parameter_hz;      ///< f_max_hz or cutoff_hz
-  Estimate bandwidth_hz;      ///< -3 dB
-  double residual_rms = 0.0;  ///< relative to the height of the record
-  Eigen::VectorXd fit;        ///< at the times of the record
+  ImpulseResponse response;
+  Estimate parameter_hz;
+  Estimate bandwidth_hz;
+  double residual_rms = 0.0;
+  Eigen::VectorXd fit;
 };
+auto fields_of(ConstOrNot<ParametricResponse> auto& r) {
+  return std::tuple(
+      Field("response", r.response, Help{"fitted response: hann, gaussian or lowpass"}),
+      Field("parameter_hz", r.parameter_hz, FieldMark::as_object,
+            Help{"`f_max_hz` or `cutoff_hz` of `response`"}),
+      Field("bandwidth_hz", r.bandwidth_hz, FieldMark::as_object, Help{"-3 dB bandwidth"}),
+      Field("residual_rms", r.residual_rms,
+            Help{"rms of the record minus the fit, relative to the height of the record"}),
+      Field("fit", r.fit, Help{"fitted record, (T,), in its units"}));
+}
 
 struct ResponsePeak {
   double time_s = 0.0;  ///< relative to the highest peak

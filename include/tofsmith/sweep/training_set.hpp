@@ -69,11 +69,19 @@ auto fields_of(ConstOrNot<TrainingSetOptions> auto& o) {
 }
 
 struct TrainingSetRun {
-  std::int64_t scenes = 0;             ///< in this shard
-  std::int64_t written = 0, kept = 0;  ///< kept: finished before
-  std::vector<std::string> failures;   ///< "name: problem"
-  std::filesystem::path index;         ///< of all finished scenes
+  std::int64_t scenes = 0;
+  std::int64_t written = 0, kept = 0;
+  std::vector<std::string> failures;
+  std::filesystem::path index;
 };
+auto fields_of(ConstOrNot<TrainingSetRun> auto& r) {
+  return std::tuple(
+      Field("scenes", r.scenes, Help{"scenes in this shard"}),
+      Field("written", r.written, Help{"scenes written by this run"}),
+      Field("kept", r.kept, Help{"scenes finished before"}),
+      Field("failures", r.failures, Help{"\"name: problem\" of scenes that are not usable"}),
+      Field("index", r.index, Help{"index of all finished scenes"}));
+}
 
 struct LoadedTrainingScene {
   SceneImage image;
