@@ -189,7 +189,7 @@ LikelihoodSearch::LikelihoodSearch(const DecodingTable& table, const AmbientProj
     : scores_(projection),
       correlation_(table, projection),
       model_(table, projection),
-      is_smooth_(depth_polynomials(projection.curve).has_value()),
+      is_smooth_(finely_sampled_curve(projection.curve).has_value()),
       posterior_(table, projection) {}
 
 double LikelihoodSearch::depth_row(const MostLikely& found) const {

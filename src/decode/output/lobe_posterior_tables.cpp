@@ -160,7 +160,7 @@ constexpr double place_turn_rad = 0.02;
 constexpr int max_places = 1 << 18;
 
 int places_per_row(const RowMajorMatrix& curve) {
-  if (!depth_polynomials(curve)) return 1;
+  if (!finely_sampled_curve(curve)) return 1;
   const double places = std::ceil(turns_of(curve).maxCoeff() / place_turn_rad);
   const auto most = std::max<Eigen::Index>(1, max_places / curve.rows());
   return static_cast<int>(std::clamp(places, 1.0, static_cast<double>(most)));

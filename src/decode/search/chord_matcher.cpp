@@ -66,11 +66,13 @@ double slack_of(const RowMajorMatrix& units) {
 
 std::optional<CloseLobes> CloseLobes::of(const AmbientProjection& projection) {
   // On a circle, intersecting lobes have the same shape; rows favour slowly passed lobes.
-  if (projection.rank() < 3 || !depth_polynomials(projection.curve)) return std::nullopt;
+  if (projection.rank() < 3) return std::nullopt;
+  const std::optional<SmoothCurve> curve = finely_sampled_curve(projection.curve);
+  if (!curve) return std::nullopt;
   const RowMajorMatrix units = projection.curve.rowwise().normalized();
   const double spacing = turns_of(projection.curve).maxCoeff();
   if (!comes_closer(units, far_apart * spacing, spacing)) return std::nullopt;
-  return CloseLobes(*SmoothCurve::of(projection.curve), slack_of(units));
+  return CloseLobes(*curve, slack_of(units));
 }
 
 CloseLobes::CloseLobes(const SmoothCurve& curve, double slack)
@@ -156,7 +158,7 @@ double furthest_of(const Eigen::VectorXd& turn_rad) {
 
 double furthest_turn_rad(const DecodingTable& table) {
   const AmbientProjection projection(table);
-  return depth_polynomials(projection.curve) ? 0.0 : furthest_of(turns_of(projection.curve));
+  return finely_sampled_curve(projection.curve) ? 0.0 : furthest_of(turns_of(projection.curve));
 }
 
 ChordMatcher::Pieces::Pieces(const DecodingTable& table, const AmbientProjection& projection,
@@ -196,7 +198,7 @@ ChordMatcher::ChordMatcher(const DecodingTable& table, const AmbientProjection& 
     : close_lobes_(CloseLobes::of(projection)),
       rows_(table, projection, for_few || close_lobes_.has_value()) {
   const Eigen::VectorXd turn_rad = turns_of(projection.curve);
-  if (furthest_of(turn_rad) > coarse_turn_rad && !depth_polynomials(projection.curve))
+  if (furthest_of(turn_rad) > coarse_turn_rad && !finely_sampled_curve(projection.curve))
     pieces_.emplace(table, projection, turn_rad, for_few);
 }
 

@@ -188,10 +188,14 @@ double DepthPolynomials::maximum(double g, double b, double c) {
   return t;
 }
 
-std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve) {
+std::optional<SmoothCurve> finely_sampled_curve(const RowMajorMatrix& curve) {
   constexpr double widest_turn_rad = 16.0 * pi / 180.0;
   if (turns_of(curve).maxCoeff() > widest_turn_rad) return std::nullopt;
-  const std::optional<SmoothCurve> smooth = SmoothCurve::of(curve);
+  return SmoothCurve::of(curve);
+}
+
+std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve) {
+  const std::optional<SmoothCurve> smooth = finely_sampled_curve(curve);
   if (!smooth) return std::nullopt;
   return DepthPolynomials(*smooth);
 }

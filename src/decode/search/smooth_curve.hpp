@@ -66,6 +66,9 @@ struct DepthPolynomials {
 };
 
 /// Returns none unless the curve is smooth with rows at most 16 degrees apart.
+std::optional<SmoothCurve> finely_sampled_curve(const RowMajorMatrix& curve);
+
+/// Polynomials of the finely_sampled_curve().
 std::optional<DepthPolynomials> depth_polynomials(const RowMajorMatrix& curve);
 
 /// Returns the largest error of maximum() for pixels on the curve [rows].
