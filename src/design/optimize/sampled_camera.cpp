@@ -248,6 +248,7 @@ DecodingCurveOf<Value>::DecodingCurveOf(const SampledCamera& camera, const Measu
   points.assign(size * static_cast<std::size_t>(measurements), Value{0});
   squares.assign(size, Value{0});
   products.assign(size, Value{0});
+  inverse_lengths.assign(size, Value{0});
   for (int j = 0; j <= samples; ++j) {
     const int at = j % samples, next = (at + 1) % samples;
     for (int r = 0; r < measurements; ++r)
@@ -256,6 +257,8 @@ DecodingCurveOf<Value>::DecodingCurveOf(const SampledCamera& camera, const Measu
     squares[static_cast<std::size_t>(j)] = static_cast<Value>(exact_points.row(at).squaredNorm());
     products[static_cast<std::size_t>(j)] =
         static_cast<Value>(exact_points.row(at).dot(exact_points.row(next)));
+    inverse_lengths[static_cast<std::size_t>(j)] =
+        1 / std::sqrt(squares[static_cast<std::size_t>(j)] + smallest_square<Value>);
   }
 }
 

@@ -120,6 +120,10 @@ template <typename Value>
 using Aligned = std::vector<Value, CacheLineAllocator<Value>>;
 using AlignedFloats = Aligned<float>;
 
+/// |p|^2 of a point without contrast.
+template <typename Value>
+inline constexpr Value smallest_square = Value(1e-10f);
+
 /// Curve that the decoder matches, with the ambient component projected out:
 ///   p_j = P x_j,  x_j = g o chi_j,  P = I - a a^T / |a|^2,  a = g o kappa,  g_i = T_i / mean T,
 /// at bins j in [0, N], where bin N equals bin 0; and Q_jk = <p_j, p_k> for adjacent bins.
@@ -134,12 +138,13 @@ struct DecodingCurveOf {
   const Value* component(int r) const { return points.data() + r * stride; }
 
   int samples, measurements;
-  int stride;                    ///< between components: whole vectors, plus one
-  Aligned<Value> points;         ///< (R, stride)
-  Aligned<Value> squares;        ///< Q_jj, j in [0, N]
-  Aligned<Value> products;       ///< Q_j,j+1, j in [0, N)
-  Eigen::MatrixXd exact_points;  ///< (N, R)
-  Eigen::VectorXd exposure_s;    ///< T (R)
+  int stride;                      ///< between components: whole vectors, plus one
+  Aligned<Value> points;           ///< (R, stride)
+  Aligned<Value> squares;          ///< Q_jj, j in [0, N]
+  Aligned<Value> products;         ///< Q_j,j+1, j in [0, N)
+  Aligned<Value> inverse_lengths;  ///< 1 / sqrt(Q_jj + smallest_square), j in [0, N]
+  Eigen::MatrixXd exact_points;    ///< (N, R)
+  Eigen::VectorXd exposure_s;      ///< T (R)
 };
 using DecodingCurve = DecodingCurveOf<float>;
 

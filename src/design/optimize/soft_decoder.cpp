@@ -3,6 +3,7 @@
 #include "design/optimize/soft_decoder.hpp"
 
 #include <limits>
+#include <span>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
@@ -22,8 +23,21 @@ namespace {
 template <typename Value>
 using Tag = hn::CappedTag<Value, widest_vector * sizeof(float) / sizeof(Value)>;
 
-constexpr float smallest_square = 1e-10f;  // |p|^2 of a point without contrast
 constexpr float smallest = 1e-30f;
+/// Smaller shares of chords, relative to the largest, are 0. Their sums are rounding errors.
+template <typename Value>
+constexpr Value negligible_log_share = std::is_same_v<Value, float> ? -25 : -45;
+
+/// <y, p_j> of a vector of points.
+template <typename Value>
+HWY_INLINE auto match_at(const DecodingCurveOf<Value>& curve, const Value* HWY_RESTRICT electrons,
+                         int j) {
+  const Tag<Value> d;
+  auto sum = hn::Zero(d);
+  for (int r = 0; r < curve.measurements; ++r)
+    sum = hn::MulAdd(hn::Set(d, electrons[r]), hn::Load(d, curve.component(r) + j), sum);
+  return sum;
+}
 
 template <typename Value>
 HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
@@ -31,12 +45,8 @@ HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
                              typename SoftDecoderOf<Value>::Scratch& scratch) {
   const Tag<Value> d;
   const int lanes = lanes_of(d);
-  for (int j = 0; j <= curve.samples; j += lanes) {
-    auto sum = hn::Zero(d);
-    for (int r = 0; r < curve.measurements; ++r)
-      sum = hn::MulAdd(hn::Set(d, electrons[r]), hn::Load(d, curve.component(r) + j), sum);
-    hn::Store(sum, d, scratch.match.data() + j);
-  }
+  for (int j = 0; j <= curve.samples; j += lanes)
+    hn::Store(match_at(curve, electrons, j), d, scratch.match.data() + j);
 }
 
 /// Finds the best point of each chord in [first, past); `first` is a multiple of the vector length,
@@ -49,7 +59,7 @@ HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve, int first, in
   const Tag<Value> d;
   const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-  const auto min_square = hn::Set(d, smallest_square);
+  const auto min_square = hn::Set(d, smallest_square<Value>);
   auto largest = hn::Set(d, -1.0f);
   for (int j = first; j < past; j += lanes) {
     const auto b0 = hn::Load(d, scratch.match.data() + j);
@@ -84,35 +94,32 @@ HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve, int first, in
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
+/// Computes all matches and returns the bin with the best correlation, the lowest of equal ones.
 template <typename Value>
-HWY_INLINE int best_bin(const DecodingCurveOf<Value>& curve,
-                        typename SoftDecoderOf<Value>::Scratch& scratch) {
+HWY_INLINE int match_all(const DecodingCurveOf<Value>& curve, const Value* HWY_RESTRICT electrons,
+                         typename SoftDecoderOf<Value>::Scratch& scratch) {
   const Tag<Value> d;
   const int lanes = lanes_of(d);
-  auto largest = hn::Set(d, -std::numeric_limits<Value>::max());
-  for (int j = 0; j < curve.samples; j += lanes) {
-    const auto match = hn::Load(d, scratch.match.data() + j);
-    const auto square = hn::Add(hn::Load(d, curve.squares.data() + j), hn::Set(d, smallest_square));
-    const auto in_range =
-        hn::Lt(hn::Iota(d, static_cast<Value>(j)), hn::Set(d, static_cast<Value>(curve.samples)));
-    const auto score = hn::IfThenElse(in_range, hn::Div(hn::Mul(match, hn::Abs(match)), square),
-                                      hn::Set(d, -std::numeric_limits<Value>::max()));
-    hn::Store(score, d, scratch.ratio.data() + j);
-    largest = hn::Max(largest, score);
+  const auto samples = hn::Set(d, static_cast<Value>(curve.samples));
+  auto best = hn::Set(d, -std::numeric_limits<Value>::max());
+  auto bin = hn::Sub(samples, hn::Set(d, 1.0f));
+  for (int j = 0; j <= curve.samples; j += lanes) {
+    const auto match = match_at(curve, electrons, j);
+    hn::Store(match, d, scratch.match.data() + j);
+    const auto score = hn::Mul(match, hn::Load(d, curve.inverse_lengths.data() + j));
+    const auto index = hn::Iota(d, static_cast<Value>(j));
+    const auto leads = hn::And(hn::Gt(score, best), hn::Lt(index, samples));
+    best = hn::IfThenElse(leads, score, best);
+    bin = hn::IfThenElse(leads, index, bin);
   }
-  const auto wanted = hn::MaxOfLanes(d, largest);
-  for (int j = 0; j < curve.samples; j += lanes) {
-    const auto lane = hn::FindFirstTrue(d, hn::Eq(hn::Load(d, scratch.ratio.data() + j), wanted));
-    if (lane >= 0) return std::min(j + static_cast<int>(lane), curve.samples - 1);
-  }
-  return curve.samples - 1;  // all scores are NaN
+  const auto is_best = hn::Eq(best, hn::MaxOfLanes(d, best));
+  return static_cast<int>(hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_best, bin, samples))));
 }
 
 template <typename Value>
 Value best_place(const DecodingCurveOf<Value>& curve, const Value* electrons,
                  typename SoftDecoderOf<Value>::Scratch& scratch) {
-  match_points(curve, electrons, scratch);
-  const int right = best_bin(curve, scratch);
+  const int right = match_all(curve, electrons, scratch);
   const int left = right > 0 ? right - 1 : curve.samples - 1;
   const int lanes = lanes_of(Tag<Value>());
   const int left_vector = left - left % lanes, right_vector = right - right % lanes;
@@ -148,15 +155,18 @@ HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQues
   const auto shift = hn::Set(d, largest);
   auto total = hn::Zero(d), error_total = hn::Zero(d);
   for (int j = 0; j < curve.samples; j += lanes) {
+    const auto exponent = hn::Mul(sharpness, hn::Sub(hn::Load(d, scratch.score.data() + j), shift));
+    const auto matters = hn::Gt(exponent, hn::Set(d, negligible_log_share<Value>));
+    if (hn::AllFalse(d, matters)) {
+      hn::Store(hn::Zero(d), d, scratch.share.data() + j);
+      continue;
+    }
     const auto index = hn::Iota(d, static_cast<Value>(j));
     const auto place = hn::Add(index, hn::Load(d, scratch.place.data() + j));
     const auto error = chord_error(d, place, static_cast<Value>(question.true_bin),
                                    static_cast<Value>(curve.samples), question);
-    const auto exponent =
-        hn::Max(hn::Set(d, -80.0f),
-                hn::Mul(sharpness, hn::Sub(hn::Load(d, scratch.score.data() + j), shift)));
     const auto in_range = hn::Lt(index, hn::Set(d, static_cast<Value>(curve.samples)));
-    const auto share = hn::IfThenElseZero(in_range, hn::Exp(d, exponent));
+    const auto share = hn::IfThenElseZero(hn::And(in_range, matters), hn::Exp(d, exponent));
     hn::Store(share, d, scratch.share.data() + j);
     hn::Store(error, d, scratch.error.data() + j);
     total = hn::Add(total, share);
@@ -177,11 +187,17 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
   const Tag<Value> d;
   const int lanes = lanes_of(d);
   const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
-  const auto min_square = hn::Set(d, smallest_square);
+  const auto min_square = hn::Set(d, smallest_square<Value>);
   const auto samples = hn::Set(d, static_cast<Value>(curve.samples));
   const auto truth = hn::Set(d, static_cast<Value>(question.true_bin));
   const auto scale = hn::Set(d, weight);
   for (int j = 0; j < curve.samples; j += lanes) {
+    const auto share = hn::Mul(hn::Load(d, scratch.share.data() + j), hn::Set(d, normalization));
+    if (hn::AllTrue(d, hn::Eq(share, zero))) {
+      hn::Store(zero, d, scratch.by_match.data() + j);
+      hn::StoreU(zero, d, scratch.by_next_match.data() + j + 1);
+      continue;
+    }
     const auto b0 = hn::Load(d, scratch.match.data() + j);
     const auto b1 = hn::LoadU(d, scratch.match.data() + j + 1);
     const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), min_square);
@@ -189,7 +205,6 @@ HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
     const auto q01 = hn::Load(d, curve.products.data() + j);
     const auto t = hn::Load(d, scratch.place.data() + j);
     const auto s = hn::Sub(one, t);
-    const auto share = hn::Mul(hn::Load(d, scratch.share.data() + j), hn::Set(d, normalization));
 
     // Through the score S = match^2 / (2 square), stationary in free t.
     const auto by_score =
@@ -241,19 +256,23 @@ HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const
                                       Value* by_electrons) {
   const Tag<Value> d;
   const int lanes = lanes_of(d);
+  const auto active = std::span(scratch.active);
+  std::size_t count = 0;
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto sum = hn::Add(hn::Load(d, scratch.by_match.data() + j),
                              hn::Load(d, scratch.by_next_match.data() + j));
     const auto in_range =
         hn::Lt(hn::Iota(d, static_cast<Value>(j)), hn::Set(d, static_cast<Value>(curve.samples)));
-    hn::Store(hn::IfThenElseZero(in_range, sum), d, scratch.by_match.data() + j);
+    const auto by_match = hn::IfThenElseZero(in_range, sum);
+    hn::Store(by_match, d, scratch.by_match.data() + j);
+    if (!hn::AllTrue(d, hn::Eq(by_match, hn::Zero(d)))) active[count++] = j;
   }
   for (int r = 0; r < curve.measurements; ++r) {
     Value* HWY_RESTRICT by_points = gradient.points.data() + r * curve.stride;
     const Value* HWY_RESTRICT points = curve.component(r);
     const auto electron = hn::Set(d, weight * electrons[r]);
     auto sum = hn::Zero(d);
-    for (int j = 0; j < curve.samples; j += lanes) {
+    for (const int j : active.first(count)) {
       const auto by_match = hn::Load(d, scratch.by_match.data() + j);
       sum = hn::MulAdd(by_match, hn::Load(d, points + j), sum);
       hn::Store(hn::MulAdd(by_match, electron, hn::Load(d, by_points + j)), d, by_points + j);
@@ -312,7 +331,7 @@ HWY_EXPORT(error_of_floats);
 HWY_EXPORT(error_of_doubles);
 
 template <typename Value>
-SoftDecoderOf<Value>::Scratch::Scratch(int stride) {
+SoftDecoderOf<Value>::Scratch::Scratch(int stride) : active(static_cast<std::size_t>(stride)) {
   for (Aligned<Value>* values :
        {&match, &ratio, &score, &place, &free, &share, &error, &by_match, &by_next_match})
     values->assign(static_cast<std::size_t>(stride), Value{0});

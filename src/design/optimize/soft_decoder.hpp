@@ -34,6 +34,7 @@ class SoftDecoderOf {
   struct Scratch {
     explicit Scratch(int stride);
     Aligned<Value> match, ratio, score, place, free, share, error, by_match, by_next_match;
+    std::vector<int> active;  ///< first points of vectors with a gradient
   };
 
  private:
