@@ -11,10 +11,12 @@
 #include <utility>
 
 #include "camera/shared/depth_prior.hpp"
+#include "core/shared/shared_progress.hpp"
 #include "design/baselines.hpp"
 #include "design/exposure_split.hpp"
 #include "simulate/shared/camera_bounds.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
@@ -158,7 +160,8 @@ std::vector<Candidate*> possible_winners(std::vector<Candidate>& candidates,
 /// smallest. Linear errors have standard errors of some percent, more than designs differ.
 void judge_contenders(const Camera& camera, const DesignOptions& options, CameraBounds& bounds,
                       const std::vector<Candidate*>& possible, const Progress& progress) {
-  constexpr double significant = 2.0;  // standard errors of the difference
+  constexpr double significant = 2.0;   // standard errors of the difference
+  constexpr double negligible = 0.005;  // relative difference
   // The last round evaluates codes that became close to the best in the round before.
   const std::vector<int> trial_factors = {3, 12, 12};
   const ProgressParts rounds(progress, {20, 60, 20});
@@ -168,17 +171,22 @@ void judge_contenders(const Camera& camera, const DesignOptions& options, Camera
   for (std::size_t round = 0; round < trial_factors.size(); ++round) {
     EvaluateOptions judging = judging_options(options);
     judging.trials *= trial_factors[round];
-    Estimate least{infinity, 0.0};
-    for (const Candidate* candidate : possible)
-      if (error_of(candidate).value < least.value) least = error_of(candidate);
+    Candidate* const best = *std::min_element(possible.begin(), possible.end(),
+                                              [&](const Candidate* a, const Candidate* b) {
+                                                return error_of(a).value < error_of(b).value;
+                                              });
+    const Estimate least = error_of(best);
     std::vector<Candidate*> close;
     std::copy_if(possible.begin(), possible.end(), std::back_inserter(close),
                  [&](const Candidate* candidate) {
                    const Estimate error = error_of(candidate);
-                   return error.value - least.value <=
-                          significant * std::hypot(error.standard_error, least.standard_error);
+                   const double margin =
+                       significant * std::hypot(error.standard_error, least.standard_error);
+                   return candidate != best && error.value - least.value <= margin &&
+                          margin > negligible * least.value;
                  });
-    if (close.size() < 2) return;
+    if (close.empty()) return;
+    close.push_back(best);
     std::erase_if(close, [&](const Candidate* candidate) {
       return candidate->error.trials >= judging.trials;
     });
@@ -297,12 +305,19 @@ void judge_candidates(const Camera& camera, const DesignOptions& options, Design
       !options.robust && !camera.operating.multipath && !camera.operating.interference;
   const ProgressParts parts(progress,
                             {60, has_contenders ? 30.0 : 0.0, options.robust ? 0.0 : 10.0});
-  const ProgressParts of_candidates(parts[0], result.candidates.size());
-  for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-    const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});
-    judge_one(result.candidates[i], camera, options, bounds, its[0]);
-    if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
-  }
+  std::vector<Candidate>& all = result.candidates;
+  SharedProgress shared(parts[0], static_cast<double>(all.size()), "codes");
+  parallel_for_indices(all.size(), [&](std::size_t i) {
+    double done = 0.0;
+    const auto add = [&](double fraction, std::string_view) {
+      shared.add(fraction - std::exchange(done, fraction));
+      return true;
+    };
+    const ProgressParts its(add, {15, options.robust ? 85.0 : 0.0});
+    judge_one(all[i], camera, options, bounds, its[0]);
+    if (options.robust) judge_robustness(all[i], camera, options, its[1]);
+    add(1.0, "");
+  });
   std::vector<int> requested;  // any, for rows: DesignOptions::exposures is their number
   if (camera.sensor.readout != Readout::rows) requested = options.exposures;
   if (has_contenders)

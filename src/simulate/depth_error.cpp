@@ -91,17 +91,21 @@ std::vector<PointColumn> point_columns(const PointDepthError& point) {
 }
 
 const std::vector<CameraBounds::Level>& CameraBounds::of(const CodeSet& code) {
-  const auto [found, is_new] =
-      levels_.try_emplace(std::pair(code.exposures(), code.exposure_shares()));
-  if (!is_new) return found->second;
+  const std::pair key(code.exposures(), code.exposure_shares());
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = levels_.find(key); found != levels_.end()) return found->second;
+  }
+  std::vector<Level> levels;
   const Camera camera = judged_camera(camera_);
   const ReceiverBound receiver(timed_by(code, camera), code.exposures());
   const DirectTofBound direct_tof(camera);
   const bool has_rows = camera.sensor.readout == Readout::rows;  // HistogramBound applies instead
   for (const OperatingPoint& point : camera.operating.points())
-    found->second.push_back({has_rows ? 0.0 : bound_mae_m(receiver, camera, point),
-                             bound_mae_m(direct_tof, camera, point)});
-  return found->second;
+    levels.push_back({has_rows ? 0.0 : bound_mae_m(receiver, camera, point),
+                      bound_mae_m(direct_tof, camera, point)});
+  const std::lock_guard lock(mutex_);
+  return levels_.try_emplace(key, std::move(levels)).first->second;
 }
 
 DepthErrorReport evaluate(const CodeSet& code, const Camera& given, const EvaluateOptions& options,

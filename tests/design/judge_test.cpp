@@ -17,6 +17,7 @@
 #include "design_setup.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 #include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
@@ -89,6 +90,20 @@ TEST(Judge, EvaluatesCodesCloseToTheBestWithMoreTrials) {
               reversed.find(c.code.name())->error.linear.geometric_mean_m.value);
   camera.operating.multipath = OperatingMultipath{};
   EXPECT_EQ(trials_of(judge(camera, codes, options), "equal"), 1);
+}
+
+TEST(Judge, StopsOnRequestWithinACode) {
+  const Camera camera = coarse_camera("paper-10f0");
+  DesignOptions options = small_options();
+  options.trials = 100'000'000;
+  double stopped_at = 0.0;
+  const auto stop = [&](double fraction, std::string_view) {
+    stopped_at = fraction;
+    return fraction == 0.0;
+  };
+  EXPECT_THROW(judge(camera, {candidate_of("hamiltonian-k4", camera)}, options, stop), Interrupted);
+  EXPECT_GT(stopped_at, 0.0);
+  EXPECT_LT(stopped_at, 0.5);
 }
 
 TEST(Judge, CountsOutliersBeyondTheConfiguredThreshold) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace tofsmith {
 
-/// Bounds that depend only on the number and the shares of the exposures. Not thread-safe.
+/// Bounds that depend only on the number and the shares of the exposures. Thread-safe.
 class CameraBounds {
  public:
   struct Level {
@@ -26,6 +27,7 @@ class CameraBounds {
 
  private:
   const Camera& camera_;
+  std::mutex mutex_;
   std::map<std::pair<int, std::vector<double>>, std::vector<Level>> levels_;  // and shares
 };
 
