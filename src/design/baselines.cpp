@@ -53,7 +53,7 @@ constexpr int samples_of_standard_codes = 360;
 constexpr const char* short_runs = "has pulses or gaps below sensor.shortest_pulse_s";
 
 /// Quick screening: a first evaluation with fewer trials excludes poor codes.
-constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000, share_looked_at = 5;
+constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000, first_look_divisor = 20;
 constexpr double contending = 1.12, far = 1.5;
 constexpr std::size_t max_contenders = 8, max_atlas_codes = 4;
 
@@ -102,7 +102,7 @@ std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, co
                                            std::uint64_t seed, Reasons& reasons) {
   const int trials = trials_per_point(camera);
   std::vector<double> errors_m =
-      first_errors_m(codes, camera, std::max(1, trials / share_looked_at), seed, reasons);
+      first_errors_m(codes, camera, std::max(1, trials / first_look_divisor), seed, reasons);
   if (errors_m.empty()) return errors_m;
   const double least = *std::min_element(errors_m.begin(), errors_m.end());
   for (std::size_t i = 0; i < codes.size(); ++i)
@@ -225,7 +225,7 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   const std::string worse = fmt::format(
       "in {} or {} trials per operating point, the error is more than {} times the error of the "
       "best standard code",
-      trials_per_point(camera) / share_looked_at, trials_per_point(camera), contending);
+      trials_per_point(camera) / first_look_divisor, trials_per_point(camera), contending);
   const std::string beside = fmt::format("{} other codes have smaller errors", max_contenders);
   for (const std::size_t i : order)
     if (!(errors[i] <= contending * errors[order.front()]))

@@ -242,6 +242,7 @@ TEST(Optimize, EndsEarlyOnlyIfAnotherNumberOfExposuresIsClearlyBetter) {
   const Camera camera = small_camera();
   DesignOptions options;
   options.optimize = small_options();
+  options.optimize.starts = 12;
   options.optimize.hops = 15;
   options.optimize.patience = 0;
   const auto best = [&](double rival_m) {
@@ -253,10 +254,12 @@ TEST(Optimize, EndsEarlyOnlyIfAnotherNumberOfExposuresIsClearlyBetter) {
   expect_same_code(best(error_m).code, alone.code);
   const std::vector<SearchStep>& steps = alone.search->steps;
   const double start_m = steps[static_cast<std::size_t>(options.optimize.starts) - 1].error_m;
-  const Candidate after_starts = best(start_m / 1.25), after_hops = best(start_m / 1.15);
+  const Candidate after_ten = best(start_m / 1.5), after_starts = best(start_m / 1.25),
+                  after_hops = best(start_m / 1.15);
+  EXPECT_LT(after_ten.search->steps.size(), after_starts.search->steps.size());
   EXPECT_LT(after_starts.search->steps.size(), after_hops.search->steps.size());
   EXPECT_LT(after_hops.search->steps.size(), steps.size());
-  for (const Candidate& lost : {after_starts, after_hops})
+  for (const Candidate& lost : {after_ten, after_starts, after_hops})
     EXPECT_THAT(lost.message, HasSubstr("another number of exposures is better"));
 }
 

@@ -61,7 +61,7 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field(
           "pool_trials", o.pool_trials, at_least(1000),
           Help{"trials that rank codes while searching, over all light levels; finished codes are "
-               "ranked by 2 and the best two by 4 times as many"}),
+               "ranked by twice as many, the best two by four times as many"}),
       Field("polish", o.polish, Help{"move the switching times of the result continuously"}),
       Field("polish_steps", o.polish_steps, at_least(0), Help{"gradient steps of polish"}),
       Field("seed", o.seed, FieldMark::from_above, Help{"seed of every random choice"}),

@@ -208,10 +208,10 @@ std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposu
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const ProgressParts parts(of_stages[s], {40, 35, 10, 15, 0.6 * splitting, 0.4 * splitting});
     PoolStage& stage = stages[s];
-    pool.run_starts(stage, parts[0]);
     // Earlier stages repeat the search with half the effort, so they never end early.
-    const bool is_last = s + 1 == stages.size();
-    pool.run_hops(stage, is_last ? task.rival_m : infinity, parts[1]);
+    const double rival_m = s + 1 == stages.size() ? task.rival_m : infinity;
+    pool.run_starts(stage, rival_m, parts[0]);
+    pool.run_hops(stage, rival_m, parts[1]);
     if (pool.lost_to_rival())
       stage.refined = std::min(stage.refined, 2);
     else

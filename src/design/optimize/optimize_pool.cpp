@@ -396,8 +396,10 @@ void OptimizePool::keep(std::vector<PoolEntry> entries) {
   if (entries_.size() > max_pool) entries_.resize(max_pool);
 }
 
-void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) {
+void OptimizePool::run_starts(const PoolStage& stage, double rival_m, const Progress& progress) {
   constexpr std::ptrdiff_t max_mixtures = 16;
+  // The first starts are known codes; all later steps together rarely gain so much.
+  constexpr double hopeless = 1.35;
   const auto count = static_cast<std::size_t>(stage.starts);
   const ProgressParts parts(progress, {starts_done_ == 0 ? 10.0 : 0.0, 90});
   if (starts_done_ == 0)
@@ -406,6 +408,8 @@ void OptimizePool::run_starts(const PoolStage& stage, const Progress& progress) 
   SharedProgress shared(
       parts[1], static_cast<double>(count - starts_done_) * options_.steps_per_start, "starts");
   for (std::size_t first = starts_done_; first < count; first += together) {
+    lost_to_rival_ = first > 0 && best_error_m() > hopeless * rival_m;
+    if (lost_to_rival_) break;
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::drawing_starts, i));
@@ -427,7 +431,8 @@ void OptimizePool::run_hops(const PoolStage& stage, double rival_m, const Progre
   constexpr double start_margin = 0.2, first_margin = 0.12, last_margin = 0.02;
   const auto count = static_cast<std::size_t>(stage.hops);
   int without_gain = 0;
-  ended_early_ = lost_to_rival_ = false;
+  ended_early_ = false;
+  if (lost_to_rival_) return;
   SharedProgress shared(progress, static_cast<double>(count - hops_done_) * options_.steps_per_hop,
                         "hops");
   for (std::size_t first = hops_done_; first < count; first += hops_together) {
@@ -436,7 +441,7 @@ void OptimizePool::run_hops(const PoolStage& stage, double rival_m, const Progre
     const double margin = first - hops_done_ < continued_.size()
                               ? start_margin
                               : last_margin + remaining * (first_margin - last_margin);
-    lost_to_rival_ = error_m(entries_.front().score.log_error_bin) > (1.0 + margin) * rival_m;
+    lost_to_rival_ = best_error_m() > (1.0 + margin) * rival_m;
     if (lost_to_rival_) break;
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {

@@ -102,10 +102,12 @@ class OptimizePool {
   OptimizePool(const DesignProblem& problem, const OptimizeOptions& options,
                std::span<const CodeSet> also, double bin_m);
 
-  void run_starts(const PoolStage& stage, const Progress& progress);
+  /// Descends from known codes and then from random ones, ten at a time, until the best of them is
+  /// too poor for the remaining steps to make it better than `rival_m`.
+  /// @param rival_m  smallest error of another search for the same camera, or infinity
+  void run_starts(const PoolStage& stage, double rival_m, const Progress& progress);
   /// Descends from the best entries and then from perturbed copies, until hops or patience are used
   /// up, or until the best entry is unlikely to become better than `rival_m`.
-  /// @param rival_m  smallest error of another search for the same camera, or infinity
   void run_hops(const PoolStage& stage, double rival_m, const Progress& progress);
   /// Descends from softened copies of the best entries; keeps the better of each.
   void refine(const PoolStage& stage, const Progress& progress);
@@ -126,6 +128,7 @@ class OptimizePool {
                    std::size_t first_item, SharedProgress& progress);
   void keep(std::vector<PoolEntry> entries);
   double error_m(double log_error_bin) const;
+  double best_error_m() const { return error_m(entries_.front().score.log_error_bin); }
 
   const DesignProblem* problem_;
   OptimizeOptions options_;
