@@ -10,7 +10,6 @@
 
 #include "decode/output/output_kernel.hpp"
 #include "decode/output/pixel_model.hpp"
-#include "decode/output/pixel_output.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
 #include "decode/search/chord_matcher.hpp"
 #include "decode/shared/marked_raw.hpp"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "decode/output/lobe_posterior.hpp"
+#include "decode/output/output_kernel.hpp"
 #include "decode/output/pixel_model.hpp"
-#include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"

@@ -11,7 +11,7 @@
 #include "decode/ambient_projection.hpp"
 #include "decode/likelihood/likelihood_model.hpp"
 #include "decode/output/lobe_posterior.hpp"
-#include "decode/output/pixel_output.hpp"
+#include "decode/output/output_kernel.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"

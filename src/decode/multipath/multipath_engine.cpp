@@ -11,6 +11,7 @@
 #include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "core/shared/special_functions.hpp"
+#include "decode/output/output_kernel.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 

@@ -7,10 +7,8 @@
 
 #include "decode/output/lobe_posterior.hpp"
 #include "decode/output/output_chunk.hpp"
-#include "decode/output/pixel_model.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "decode/search/shared/bin_records.hpp"
-#include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 
@@ -68,5 +66,21 @@ class OutputKernel {
   std::optional<ResidualModel> residuals_;  // none: only positions
   RecordTable limits_;
 };
+
+/// Writes the values and the status of one pixel, in double precision.
+/// @param raw  (K) raw numbers
+/// @param at   index of the pixel in the view
+void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
+                 const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded);
+/// As above, after computing the residual if a plane needs it.
+/// @param electrons  without dark electrons (K)
+void store_pixel(const DecodingTable& table, const DecodeOptions& options,
+                 const ResidualModel& residuals, const double* electrons, PixelDecoding decoding,
+                 const PixelToDecode& pixel, const DecodedView& decoded);
+/// Writes the planes that are independent of the depth's position: signal, ambient light,
+/// confidence and residual.
+/// @param has_depth  false: NaN
+void store_light(const PixelDecoding& pixel, bool has_depth, std::size_t at,
+                 const DecodedView& decoded);
 
 }  // namespace tofsmith

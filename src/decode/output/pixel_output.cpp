@@ -8,67 +8,10 @@
 
 #include "core/shared/shared_progress.hpp"
 #include "decode/output/shared/decoder_parts.hpp"
-#include "decode/shared/marked_raw.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
-
-namespace {
-
-PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, const float* raw,
-                      const PixelDecoding& pixel) {
-  const SaturationLevels levels(table);
-  for (int k = 0; k < table.measurements(); ++k)
-    if (levels.clip(raw[k])) return PixelStatus::saturated;
-  const PixelEstimate& estimate = pixel.estimate;
-  if (!(estimate.signal_e_per_s > 0.0)) return PixelStatus::no_return;
-  if (estimate.signal_e_per_s <
-      options.low_signal_sigma * estimate.signal_standard_deviation_e_per_s)
-    return PixelStatus::low_signal;
-  if (pixel.residual.is_inconsistent) return PixelStatus::inconsistent;
-  if (pixel.confidence < options.min_confidence) return PixelStatus::ambiguous;
-  return PixelStatus::ok;
-}
-
-void store_value(float* plane, std::size_t at, bool has_depth, double value) {
-  if (plane) plane[at] = has_depth ? static_cast<float>(value) : no_value<float>;
-}
-
-}  // namespace
-
-void store_light(const PixelDecoding& pixel, bool has_depth, std::size_t at,
-                 const DecodedView& decoded) {
-  store_value(decoded.signal_e_per_s, at, has_depth, pixel.estimate.signal_e_per_s);
-  store_value(decoded.ambient_e_per_s, at, has_depth, pixel.estimate.ambient_e_per_s);
-  store_value(decoded.confidence, at, has_depth, pixel.confidence);
-  store_value(decoded.residual, at, has_depth, pixel.residual.per_freedom);
-}
-
-void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
-                 const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded) {
-  const PixelEstimate& estimate = pixel.estimate;
-  const bool has_depth = estimate.signal_e_per_s > 0.0;
-  // Rounding to float may yield the end of the range, which equals 0.
-  const bool at_end =
-      static_cast<float>(pixel.depth_row * table.row_m()) >= static_cast<float>(table.range_m);
-  if (decoded.bin) decoded.bin[at] = nearest_bin(table.in_bins(pixel.depth_row), table.bin_count());
-  store_value(decoded.depth_m, at, has_depth, at_end ? 0.0 : pixel.depth_row * table.row_m());
-  store_value(decoded.deviation_m, at, has_depth,
-              estimate.depth_standard_deviation_row * table.row_m());
-  store_light(pixel, has_depth, at, decoded);
-  if (decoded.status) decoded.status[at] = status_of(table, options, raw, pixel);
-}
-
-void store_pixel(const DecodingTable& table, const DecodeOptions& options,
-                 const ResidualModel& residuals, const double* electrons, PixelDecoding decoding,
-                 const PixelToDecode& pixel, const DecodedView& decoded) {
-  if (decoding.estimate.signal_e_per_s > 0.0 && (decoded.residual || decoded.status))
-    decoding.residual =
-        residuals.residual(electrons, decoding.estimate, Position::at(decoding.depth_row),
-                           pixel.variance_share * pixel.noise.of_residual);
-  store_pixel(table, options, pixel.raw, decoding, pixel.at, decoded);
-}
 
 void store_invalid(std::size_t at, const DecodedView& decoded) {
   for_each_plane(

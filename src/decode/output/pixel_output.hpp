@@ -40,21 +40,6 @@ struct PixelToDecode {
   std::size_t at = 0;               ///< index in the planes
 };
 
-/// Writes the values and the status of one pixel.
-/// @param raw  (K) raw numbers
-/// @param at   index of the pixel in the view
-void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
-                 const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded);
-/// As above, after computing the residual if a plane needs it.
-/// @param electrons  without dark electrons (K)
-void store_pixel(const DecodingTable& table, const DecodeOptions& options,
-                 const ResidualModel& residuals, const double* electrons, PixelDecoding decoding,
-                 const PixelToDecode& pixel, const DecodedView& decoded);
-/// Writes the planes that are independent of the depth's position: signal, ambient light,
-/// confidence and residual.
-/// @param has_depth  false: NaN
-void store_light(const PixelDecoding& pixel, bool has_depth, std::size_t at,
-                 const DecodedView& decoded);
 /// Writes a pixel with a NaN or infinite measurement.
 void store_invalid(std::size_t at, const DecodedView& decoded);
 

@@ -18,7 +18,7 @@
 #include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "decode/output/lobe_posterior.hpp"
-#include "decode/output/pixel_output.hpp"
+#include "decode/output/output_kernel.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode/shared/marked_raw.hpp"
 #include "decode/unwrap/phase_unwrapper.hpp"
