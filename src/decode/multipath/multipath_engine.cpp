@@ -327,7 +327,7 @@ void MultipathEngine::replace_light(const PixelGroup& group, const PairFits& fit
   const auto confidence = static_cast<float>(probability_of(0.5 * lead));
   PixelDecoding pixel{.confidence = confidence};
   pixel.estimate.signal_e_per_s = fits.signal_e_per_s[lane];
-  if (decoded.ambient_e_per_s) pixel.estimate.ambient_e_per_s = ambient_e_per_s(group, fits, lane);
+  pixel.estimate.ambient_e_per_s = ambient_e_per_s(group, fits, lane);
   if (freedom_ > 0) pixel.residual.per_freedom = chi2 / freedom_;
   store_light(pixel, true, at, decoded);
   if (!decoded.status || decoded.status[at] != PixelStatus::inconsistent) return;
