@@ -56,12 +56,12 @@ constexpr auto words_of(ReturnStatus /*any*/) {
   return word_list("none", "single", "two", "unresolved");
 }
 
-/// Origin of a plane, and whether it is written by default.
+/// Origin of a plane, and whether it is written by default. A GPU computes usual and on_request.
 enum class PlaneUse {
   usual,       ///< from every decoder, by default
   on_request,  ///< from every decoder
   of_returns,  ///< from decoders of several returns, by default
-  of_frames    ///< from decode_frame(), computed from the raw numbers
+  of_frames    ///< from decode_frame(), computed on the CPU from the raw numbers
 };
 
 // All planes of a decoded frame, from which structs, names, help texts, files and Python classes
