@@ -16,6 +16,7 @@
 
 #include "core/shared/text_numbers.hpp"
 #include "decode_recording_fixture.hpp"
+#include "io/images/exr.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
@@ -348,6 +349,39 @@ TEST(DecodedPlanes, HaveUniqueNames) {
   EXPECT_EQ(names.size(), plane_descriptions.size());
   EXPECT_EQ(parse_word<DecodedPlane>("plane", "amplitude"), DecodedPlane::signal);
   EXPECT_THROW(parse_word<DecodedPlane>("plane", "depth_mm"), std::invalid_argument);
+}
+
+TEST(DecodedPlanes, AreInEveryFileOfSeveralPlanes) {
+  const TemporaryDirectory directory;
+  std::vector<DecodedPlane> planes;
+  for (const PlaneDescription& described : plane_descriptions) planes.push_back(described.plane);
+  DepthImage image(planes, 2, 3);
+  for (std::size_t p = 0; p < planes.size(); ++p)
+    with_plane(
+        planes[p],
+        [p]<typename Value>(Image<Value>& values) {
+          std::ranges::fill(values.pixels, static_cast<Value>(p + 1));
+        },
+        image);
+  for (const char* name : {"d.npz", "d.exr", "d.ply"})
+    write_decoded(directory / name, image, planes, PinholeView::centred(3, 2, 1.0),
+                  OutputPolicy::refuse_existing, true);
+  const NpzArrays arrays = read_npz(directory / "d.npz");
+  const ExrPlanes channels = read_exr(directory / "d.exr");
+  std::ifstream file(directory / "d.ply", std::ios::binary);
+  const std::string points((std::istreambuf_iterator<char>(file)), {});
+  const char* const scalars = points.data() + points.find("end_header\n") + 11 + 3 * sizeof(float);
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const std::string word(name_of(planes[p]));
+    SCOPED_TRACE(word);
+    const std::vector<float> expected(6, static_cast<float>(p + 1));
+    EXPECT_EQ(arrays.at(word).to_floats(), expected);
+    EXPECT_EQ(channels.at(planes[p] == DecodedPlane::depth ? "Z" : word).pixels, expected);
+    EXPECT_THAT(points, HasSubstr("property float " + word + "\n"));
+    float scalar = 0.0f;
+    std::memcpy(&scalar, scalars + p * sizeof(float), sizeof(float));
+    EXPECT_EQ(scalar, expected.front());
+  }
 }
 
 TEST(LoadDecodingTable, AcceptsOptionsOfTablesForTablesOnly) {

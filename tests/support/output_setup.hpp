@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <type_traits>
 #include <vector>
 
@@ -175,23 +176,23 @@ inline void expect_near(const std::vector<float>& values, const std::vector<floa
   }
 }
 
-/// Compares deviations or residuals. The kernel evaluates the noise once per quarter of a chord,
-/// which differs much within the quarter only for a bright pixel with vanishing shot noise. At a
-/// bin, the residual may use the slope of either side.
-inline void expect_similar(const std::vector<float>& deviations, const std::vector<float>& expected,
-                           double others_share = 0.02) {
-  expect_near(deviations, expected, 1.0, 0.0, "deviation or residual");
+/// Compares deviations, residuals or values of other planes. The kernel evaluates the noise once
+/// per quarter of a chord, which differs much within the quarter only for a bright pixel with
+/// vanishing shot noise. At a bin, the residual may use the slope of either side.
+inline void expect_similar(const std::vector<float>& values, const std::vector<float>& expected,
+                           double others_share, const char* plane) {
+  expect_near(values, expected, 1.0, 0.0, plane);
   double sum = 0.0;
   int finite = 0, others = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     if (!std::isfinite(expected[i])) continue;
-    const double share = std::abs(deviations[i] / expected[i] - 1.0);
+    const double share = std::abs(values[i] / expected[i] - 1.0);
     sum += share;
     ++finite;
     others += share > 0.1;
   }
-  EXPECT_LE(sum, 0.01 * finite);
-  EXPECT_LE(others, others_share * finite);
+  EXPECT_LE(sum, 0.01 * finite) << plane;
+  EXPECT_LE(others, others_share * finite) << plane;
 }
 
 /// Compares all planes but bins and confidence; confidence differs more in single precision.
@@ -218,12 +219,25 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   // If the best row is not the nearest one, the kernel extrapolates the signal slightly.
   expect_near(outputs.ambient_e_per_s.pixels, expected.ambient_e_per_s.pixels, 2e-6,
               4e-6 * brightest_e_per_s, "ambient");
-  expect_similar(outputs.deviation_m.pixels, expected.deviation_m.pixels);
-  const auto plus_one = [](std::vector<float> values) {
-    for (float& value : values) value += 1.0f;
+  const std::set compared{DecodedPlane::depth, DecodedPlane::signal, DecodedPlane::ambient,
+                          DecodedPlane::confidence};
+  const auto plus = [](float added, std::vector<float> values) {
+    for (float& value : values) value += added;
     return values;
   };
-  expect_similar(plus_one(outputs.residual.pixels), plus_one(expected.residual.pixels), 0.03);
+  for (const DecodedPlane plane : decoder_planes)
+    with_plane(
+        plane,
+        [&]<typename Value>(const Image<Value>& values, const Image<Value>& defined) {
+          if constexpr (std::is_same_v<Value, float>) {
+            if (compared.contains(plane)) return;
+            const bool has_unit = !description_of(plane).unit.empty();
+            const float added = has_unit ? 0.0f : 1.0f;
+            expect_similar(plus(added, values.pixels), plus(added, defined.pixels),
+                           has_unit ? 0.02 : 0.03, description_of(plane).member.data());
+          }
+        },
+        outputs, expected);
 }
 
 }  // namespace tofsmith
