@@ -4,7 +4,6 @@
 
 import contextlib
 import sys
-import time
 import unittest
 from pathlib import Path
 
@@ -99,13 +98,8 @@ class LabTest(unittest.TestCase):
         return self.driver.execute_script(
             "return document.querySelector(arguments[0])?.textContent", selector)
 
-    def wait(self, script, seconds=20):
-        end = time.monotonic() + seconds
-        while not (found := self.driver.execute_script("return " + script)):
-            if time.monotonic() > end:
-                self.fail(f"still not: {script}")
-            time.sleep(0.02)
-        return found
+    def wait(self, script):
+        self.run_script(f"await waitFor(() => {script});")
 
 
 def run_tests(page_or_engine):

@@ -16,19 +16,26 @@ LAB = HERE.parents[2] / "apps" / "lab" / "page" / "index.html"
 
 
 def handler_of(program):
-    """Answers each request with a separate process and forwards its lines immediately."""
+    """Answers each new request with a separate process and forwards its lines immediately."""
+    answers = {}  # complete answers; every fresh page sends the same requests first
+
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_POST(self):
             request = self.rfile.read(int(self.headers["Content-Length"]))
             self.send_response(200)
             self.send_header("Access-Control-Allow-Origin", "*")
             self.end_headers()
+            if request in answers:
+                return self.wfile.write(answers[request])
             with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as engine:
                 engine.stdin.write(request)
                 engine.stdin.close()
+                answer = b""
                 try:
                     for line in engine.stdout:
                         self.wfile.write(line)
+                        answer += line
+                    answers[request] = answer
                 except OSError:  # the page has ended its worker
                     engine.kill()
 
