@@ -11,7 +11,7 @@ set_tests_properties(Lab.PacksItsPage PROPERTIES LABELS apps)
 add_test(NAME Lab.BuiltPageWorksInABrowser
   COMMAND /usr/bin/python3 -B "${lab_tests}/lab_page_test.py" "${built_page}")
 set_tests_properties(Lab.BuiltPageWorksInABrowser
-  PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 LABELS apps)
+  PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 LABELS apps COST 150)
 if(TARGET tofsmith_cli)
   add_executable(lab_engine_cli apps/lab/lab_engine_cli.cpp)
   target_link_libraries(lab_engine_cli PRIVATE tofsmith_lab_engine tofsmith_build_options fmt::fmt)
@@ -25,5 +25,5 @@ if(TARGET tofsmith_cli)
             "${built_page}")
   set_tests_properties(
     Lab.PageWorksInABrowser Lab.PageEqualsTheCommand Lab.BuiltPageEqualsTheCommand
-    PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 LABELS apps)
+    PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 LABELS apps COST 150)
 endif()
