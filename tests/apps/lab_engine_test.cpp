@@ -334,9 +334,29 @@ TEST(LabEngine, WrongArgumentsAreReportedAsInFiles) {
 }
 
 TEST(LabEngine, AnEdgeRequiresItsPlace) {
-  EXPECT_EQ(error_of(R"({"call": "move_edge", "built_in": "paper-30x", "arm": "gate", "edge": 1,
-                        "measurement": 0, "code": {"name": "square-k4"}})")["field"],
-            "position");
+  for (const char* name : {"arm", "measurement", "edge", "position"}) {
+    Json request = move_request("gate", 1, 0.3);
+    request.erase(name);
+    Json error = error_of(request.dump());
+    EXPECT_EQ(error["field"], name);
+    EXPECT_EQ(error["message"], std::string(name) + " = nothing; expected a value");
+  }
+}
+
+TEST(LabEngine, ACommandRequiresItsName) {
+  EXPECT_EQ(error_of(R"({"call": "command", "built_in": "paper-10f0"})")["message"],
+            "what = nothing; expected camera, codes, evaluate, scene, design, export");
+}
+
+TEST(LabEngine, EvaluationsAndDesignsHaveTheirOwnRangesOfTrials) {
+  Json request = {{"call", "command"}, {"what", "evaluate"}, {"codes", {"square-k4"}}};
+  for (const std::int64_t trials : {std::int64_t{2}, std::int64_t{4'000'000'000}}) {
+    request["trials"] = trials;
+    EXPECT_EQ(ask(request).json["command"],
+              "tofsmith evaluate square-k4 --trials " + std::to_string(trials));
+  }
+  for (const int trials : {999, 100'000'001})
+    EXPECT_EQ(error_of(Json{{"call", "design"}, {"trials", trials}}.dump())["field"], "trials");
 }
 
 }  // namespace

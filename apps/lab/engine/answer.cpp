@@ -112,7 +112,7 @@ void read_arguments(TableReader& table, Arguments& arguments) {
 Answer call(TableReader& request, const Progress& progress) {
   std::string name;
   request.value("call", name);
-  const auto with = [&](auto function, auto... arguments) {
+  const auto answered_by = [&](auto function, auto... arguments) {
     (read_arguments(request, arguments), ...);
     request.finish();
     (check_fields(arguments), ...);
@@ -122,17 +122,18 @@ Answer call(TableReader& request, const Progress& progress) {
       return function(arguments...);
   };
   if (name == "about") return about();
-  if (name == "camera") return with(camera, CameraArguments());
-  if (name == "set") return with(set, CameraArguments(), Change());
-  if (name == "code") return with(code, CodeArguments());
-  if (name == "move_edge") return with(move_edge, CodeArguments(), EdgeMove());
-  if (name == "save_code") return with(save_code, CodeArguments());
-  if (name == "evaluate") return with(evaluate_answer, CodeArguments(), EvaluateOptions());
-  if (name == "scene") return with(scene_answer, CodeArguments(), SceneArguments());
-  if (name == "design") return with(design_answer, CameraArguments(), DesignArguments());
+  if (name == "camera") return answered_by(camera, CameraArguments());
+  if (name == "set") return answered_by(set, CameraArguments(), Change());
+  if (name == "code") return answered_by(code, CodeArguments());
+  if (name == "move_edge") return answered_by(move_edge, CodeArguments(), EdgeMove());
+  if (name == "save_code") return answered_by(save_code, CodeArguments());
+  if (name == "evaluate") return answered_by(evaluate_answer, CodeArguments(), EvaluateOptions());
+  if (name == "scene") return answered_by(scene_answer, CodeArguments(), SceneArguments());
+  if (name == "design")
+    return answered_by(design_answer, CameraArguments(), DesignArguments(), DesignTrials());
   if (name == "command")
-    return with(command_answer, CameraArguments(), CommandArguments(), SceneArguments(),
-                DesignArguments());
+    return answered_by(command_answer, CameraArguments(), CommandArguments(), SceneArguments(),
+                       DesignArguments());
   reject("call", name,
          "expected about, camera, set, code, move_edge, save_code, evaluate, scene, design or "
          "command");

@@ -247,23 +247,26 @@ Answer code_answer(const CodeSet& code, const Camera& camera) {
 }
 
 CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgeMove& move) {
-  require(move.measurement < code.measurements(), "measurement", move.measurement,
+  for_each_field(move, [](const auto& field) {
+    require(field.value.has_value(), field.name, "nothing", "expected a value");
+  });
+  require(*move.measurement < code.measurements(), "measurement", *move.measurement,
           fmt::format("expected 0 to {}", code.measurements() - 1));
   std::vector<Waveform> light, gates;
   for (int e = 0; e < code.exposures(); ++e) light.push_back(code.modulation(e));
   for (int i = 0; i < code.measurements(); ++i) gates.push_back(code.demodulation(i));
-  const auto exposure = static_cast<std::size_t>(code.exposure_of(move.measurement));
-  const auto gate = static_cast<std::size_t>(move.measurement),
-             edge = static_cast<std::size_t>(move.edge);
+  const auto exposure = static_cast<std::size_t>(code.exposure_of(*move.measurement));
+  const auto gate = static_cast<std::size_t>(*move.measurement),
+             edge = static_cast<std::size_t>(*move.edge);
   const bool is_light = move.arm == EdgeArm::light;
   Waveform& waveform = is_light ? light[exposure] : gates[gate];
   const std::vector<double> edges = edges_of(waveform);
-  require(!edges.empty(), name_of(move.arm), move.measurement,
+  require(!edges.empty(), name_of(*move.arm), *move.measurement,
           "has no edges, because the waveform is not binary");
   require(edge < edges.size(), "edge", edge, fmt::format("expected 0 to {}", edges.size() - 1));
 
   const double gap = 0.25 / code.samples();
-  const std::vector<OnInterval> on = moved_edge(waveform, edge, move.position, gap);
+  const std::vector<OnInterval> on = moved_edge(waveform, edge, *move.position, gap);
   if (is_light) {
     double duty = 0.0;
     for (const OnInterval& interval : on) duty += interval.fall - interval.rise;

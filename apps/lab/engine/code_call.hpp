@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
+#include <optional>
 
 #include "answer.hpp"
 #include "tofsmith/camera/camera.hpp"
@@ -25,12 +25,11 @@ Answer code_answer(const CodeSet& code, const Camera& camera);
 enum class EdgeArm { light, gate };
 constexpr auto words_of(EdgeArm /*any*/) { return word_list("light", "gate"); }
 
-/// The defaults are invalid.
+/// All members are required.
 struct EdgeMove {
-  EdgeArm arm = EdgeArm::light;
-  int measurement = -1;
-  int edge = -1;
-  double position = std::numeric_limits<double>::quiet_NaN();
+  std::optional<EdgeArm> arm;
+  std::optional<int> measurement, edge;
+  std::optional<double> position;
 };
 auto fields_of(ConstOrNot<EdgeMove> auto& m) {
   return std::tuple(
@@ -43,8 +42,8 @@ auto fields_of(ConstOrNot<EdgeMove> auto& m) {
 /// Returns the code with one switching time moved, at most to the neighbouring edge. The light
 /// keeps the maximum brightness that its average and peak power permit. Complementary taps remain
 /// complementary.
-/// @throws InvalidArgument for an invalid place, a waveform that is not binary, or a code that the
-///   camera does not support
+/// @throws InvalidArgument for a missing member, an invalid place, a waveform that is not binary,
+///   or a code that the camera does not support
 CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgeMove& move);
 
 }  // namespace tofsmith::lab

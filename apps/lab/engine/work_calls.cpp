@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -168,15 +166,14 @@ Answer scene_answer(const CodeArguments& coded, const SceneArguments& arguments,
 }
 
 Answer design_answer(const CameraArguments& camera_arguments, const DesignArguments& arguments,
-                     const Progress& progress) {
+                     const DesignTrials& trials, const Progress& progress) {
   const Camera camera = camera_arguments.load();
   DesignOptions options;
   options.method = arguments.method.value_or(options.method);
   options = with_effort(std::move(options), arguments.effort.value_or(0.1));
   if (arguments.exposures) options.exposures = {*arguments.exposures};
-  options.trials = static_cast<int>(std::min<std::int64_t>(
-      arguments.trials.value_or(options.trials), std::numeric_limits<int>::max()));
-  options.seed = arguments.seed.value_or(options.seed);
+  options.trials = trials.trials.value_or(options.trials);
+  options.seed = trials.seed.value_or(options.seed);
   options.validate();
   const DesignResult result = design(camera, options, progress);
   const Candidate& winner = result.winner();
@@ -194,10 +191,13 @@ Answer design_answer(const CameraArguments& camera_arguments, const DesignArgume
 
 Answer command_answer(const CameraArguments& camera, const CommandArguments& arguments,
                       const SceneArguments& scene, const DesignArguments& design) {
+  require(arguments.what.has_value(), "what", "nothing",
+          fmt::format("expected {}", fmt::join(all_words<Command>, ", ")));
   const std::string name = arguments.camera_file.value_or(camera.built_in.value_or(""));
   const std::string settings = settings_words(camera);
-  const std::string with = (name.empty() ? "" : " --camera " + shell_word(name)) + settings;
-  const std::string trials = option("--trials", design.trials) + option("--seed", design.seed);
+  const std::string camera_words = (name.empty() ? "" : " --camera " + shell_word(name)) + settings;
+  const std::string trials =
+      option("--trials", arguments.trials) + option("--seed", arguments.seed);
   std::vector<std::string> codes = arguments.codes;
   for (std::string& code : codes) code = shell_word(code);
   const auto first_code = [&] {
@@ -209,19 +209,19 @@ Answer command_answer(const CameraArguments& camera, const CommandArguments& arg
     command = "tofsmith cameras " +
               shell_word(name.empty() ? std::string(default_camera_name) : name) + settings;
   } else if (arguments.what == Command::codes) {
-    command = "tofsmith codes " + first_code() + with;
+    command = "tofsmith codes " + first_code() + camera_words;
   } else if (arguments.what == Command::evaluate) {
     first_code();
-    command = fmt::format("tofsmith evaluate {}{}{}", fmt::join(codes, " "), with, trials);
+    command = fmt::format("tofsmith evaluate {}{}{}", fmt::join(codes, " "), camera_words, trials);
   } else if (arguments.what == Command::scene) {
-    command = scene_commands(scene, first_code(), with);
+    command = scene_commands(scene, first_code(), camera_words);
   } else if (arguments.what == Command::design) {
-    command = "tofsmith design" + with;
+    command = "tofsmith design" + camera_words;
     if (design.method) command += fmt::format(" --method {}", name_of(*design.method));
     command += option("--exposures", design.exposures) + option("--effort", design.effort) +
                trials + " -o design";
   } else {
-    command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), with);
+    command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), camera_words);
   }
   Answer answer;
   answer["command"] = command;

@@ -35,15 +35,20 @@ struct DesignArguments {
   std::optional<DesignMethod> method;
   std::optional<double> effort;
   std::optional<int> exposures;
-  std::optional<std::int64_t> trials;
-  std::optional<std::uint64_t> seed;
 };
 auto fields_of(ConstOrNot<DesignArguments> auto& d) {
+  return std::tuple(Field("method", d.method, Help{"method"}, IfAbsent{"best"}),
+                    Field("effort", d.effort, Help{"work of all searches"}, IfAbsent{"0.1"}),
+                    Field("exposures", d.exposures, closed(1, 16), Help{"number of exposures"}));
+}
+
+struct DesignTrials {
+  std::optional<int> trials;
+  std::optional<std::uint64_t> seed;
+};
+auto fields_of(ConstOrNot<DesignTrials> auto& d) {
   return std::tuple(
-      Field("method", d.method, Help{"method"}, IfAbsent{"best"}),
-      Field("effort", d.effort, Help{"work of all searches"}, IfAbsent{"0.1"}),
-      Field("exposures", d.exposures, closed(1, 8), Help{"number of exposures"}),
-      Field("trials", d.trials, closed(2, 4e9), Help{"trials of the final evaluation"}),
+      Field("trials", d.trials, closed(1000, 1e8), Help{"trials of the final evaluation"}),
       Field("seed", d.seed, Help{"seed of every random choice"}, IfAbsent{"1"}));
 }
 
@@ -53,14 +58,18 @@ constexpr auto words_of(Command /*any*/) {
 }
 
 struct CommandArguments {
-  Command what = Command::camera;
+  std::optional<Command> what;  ///< required
   std::optional<std::string> camera_file;
   std::vector<std::string> codes;
+  std::optional<std::int64_t> trials;
+  std::optional<std::uint64_t> seed;
 };
 auto fields_of(ConstOrNot<CommandArguments> auto& a) {
   return std::tuple(Field("what", a.what, Help{"command"}),
                     Field("camera_file", a.camera_file, Help{"name of the saved camera"}),
-                    Field("codes", a.codes, Help{"families or names of files"}));
+                    Field("codes", a.codes, Help{"families or names of files"}),
+                    Field("trials", a.trials, closed(2, 4e9), Help{"trials of an evaluation"}),
+                    Field("seed", a.seed, Help{"seed of all random numbers"}));
 }
 
 /// Returns {document: output of `tofsmith evaluate --json`; signal_e_per_s, ambient_e_per_s,
@@ -77,7 +86,7 @@ Answer scene_answer(const CodeArguments& coded, const SceneArguments& arguments,
 /// Returns {document: output of `tofsmith design --json`; name, file, error_m, explanation,
 /// left_out}.
 Answer design_answer(const CameraArguments& camera_arguments, const DesignArguments& arguments,
-                     const Progress& progress);
+                     const DesignTrials& trials, const Progress& progress);
 
 /// Returns {command: shell commands that give the same result}. The page passes all arguments; each
 /// command uses some of them.
