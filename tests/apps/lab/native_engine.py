@@ -4,6 +4,7 @@
 
 import contextlib
 import http.server
+import json
 import subprocess
 import sys
 import tempfile
@@ -17,7 +18,9 @@ LAB = HERE.parents[2] / "apps" / "lab" / "page" / "index.html"
 
 def handler_of(program):
     """Answers each new request with a separate process and forwards its lines immediately."""
-    answers = {}  # complete answers; every fresh page sends the same requests first
+    # Complete answers, as every fresh page sends the same requests first. Not of designs, because
+    # tests cancel them.
+    answers = {}
 
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_POST(self):
@@ -35,7 +38,8 @@ def handler_of(program):
                     for line in engine.stdout:
                         self.wfile.write(line)
                         answer += line
-                    answers[request] = answer
+                    if engine.wait() == 0 and json.loads(request)["call"] != "design":
+                        answers[request] = answer
                 except OSError:  # the page has ended its worker
                     engine.kill()
 
