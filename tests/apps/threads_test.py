@@ -63,8 +63,8 @@ COMMANDS = {
                 "--no-map", "-o", "require.json"),
     "require, atlas": ("require", "--error", "30mm", *SMALL, "--vary", "power", *TRIALS, "-o",
                        "from_atlas.json"),
-    "design": ("design", *SMALL, "--method", "optimize", "--exposures", "3", "--effort", ".01",
-               *TRIALS, "-o", "optimized"),
+    "design": ("design", *SMALL, "--method", "optimize", "--effort", ".01", *TRIALS, "-o",
+               "optimized"),  # with several numbers of exposures, searches end early
     "design, factorized": ("design", *SMALL, "--method", "factorize", "--exposures", "3",
                            "--effort", ".01", *TRIALS, "-o", "factorized"),
     "report": ("report", "factorized", "-o", "factorized.html"),
