@@ -62,8 +62,10 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
   CLI::Option* const condition =
       field.only_with.empty() ? nullptr
                               : command.get_option_no_throw(fmt::format("--{}", field.only_with));
+  std::string summary(field.help);
+  if constexpr (NumberPair<Single>) summary += fmt::format("; example: {}", Single::example);
   const std::string help = full_help(
-      field.unit(), field.help, condition ? std::string_view() : field.only_with, field.if_absent);
+      field.unit(), summary, condition ? std::string_view() : field.only_with, field.if_absent);
   CLI::Option* added = nullptr;
   if constexpr (std::is_same_v<Value, bool>) {
     added = command.add_flag(option, field.value, option[0] == '!' ? "do not " + help : help);
@@ -86,8 +88,8 @@ CLI::Option* add_option_of(CLI::App& command, const Field<Value>& field,
           auto [first, second] = fields_of(pair);
           if (!read_number_pair(text, Single::separator, first.value, second.value) ||
               !pair.is_valid())
-            throw CLI::ValidationError(option,
-                                       fmt::format("found {}; expected {}", text, Single::rule));
+            throw CLI::ValidationError(option, fmt::format("found {}; expected {}, such as {}",
+                                                           text, Single::rule, Single::example));
           return pair;
         });
   } else {

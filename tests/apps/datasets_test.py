@@ -56,7 +56,7 @@ class Datasets(CommandLineTest):
         np.save(self.path("one.npy"), np.ones((4, 4), np.float32))
         for arguments, words in (
                 (["scenes", "--truth", "t.npy"], ["--truth"]),
-                (["scenes", "--signal-range", "5"], ["--signal-range: found 5", "a:b"]),
+                (["scenes", "--signal-range", "5"], ["--signal-range: found 5", "1e3:1e5"]),
                 (["scenes", "--signal-range", "5:1"], ["--signal-range"]),
                 (["scenes", "--signal-range", "1:5", "--signal", "3"], ["--signal-range"]),
                 (["scenes", "--shard", "3/2"], ["--shard: found 3/2"]),

@@ -21,7 +21,8 @@ struct Course {
   int number = 1, count = 1;
 
   static constexpr char separator = '/';
-  static constexpr std::string_view rule = "i/n, such as 1/3";
+  static constexpr std::string_view rule = "number <= count";
+  static constexpr std::string_view example = "1/3";
   bool is_valid() const { return number <= count; }
 };
 auto fields_of(ConstOrNot<Course> auto& c) {
@@ -51,7 +52,7 @@ auto fields_of(ConstOrNot<Oven> auto& o) {
                     Field("night", o.night, Help{"heat at night"}, IfAbsent{"none"}),
                     Field("time_s", o.time_s, at_least(0), Help{"times"}),
                     Field("recipe", o.recipe, Help{"name of the recipe"}, OnlyWith{"grill"}),
-                    Field("course", o.course, Help{"course i/n of the meal"}));
+                    Field("course", o.course, Help{"course of the meal"}));
 }
 
 namespace apps {
@@ -127,7 +128,7 @@ TEST(DescribedOptions, RejectValuesOutsideTheirDescription) {
   EXPECT_EQ(refused({"--recipe", "bread"}), "--recipe requires --grill");
   for (const char* course : {"2", "2/x", "3/2"})
     EXPECT_EQ(refused({"--course", course}),
-              "--course: found " + std::string(course) + "; expected i/n, such as 1/3");
+              "--course: found " + std::string(course) + "; expected number <= count, such as 1/3");
 }
 
 TEST(DescribedOptions, ShowDescriptionAndDefaultInHelp) {
@@ -141,6 +142,7 @@ TEST(DescribedOptions, ShowDescriptionAndDefaultInHelp) {
   EXPECT_THAT(help, ContainsRegex("--heat TEXT:.top,bottom,both.( .both.|=both)"));
   EXPECT_THAT(help, HasSubstr("heat at night (default: none)"));
   EXPECT_THAT(help, HasSubstr("times [s]"));
+  EXPECT_THAT(help, HasSubstr("course of the meal; example: 1/3"));
   EXPECT_THAT(help, Not(HasSubstr("only with grill")));
 }
 

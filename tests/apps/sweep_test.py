@@ -165,7 +165,7 @@ class Sweep(CommandLineTest):
         for arguments, words in (
                 ([], ["SWEEP is required"]),
                 (["s.toml"], ["--store is required"]),
-                (["s.toml", *store, "--shard", "4/3"], ["--shard: found 4/3", "i/n"]),
+                (["s.toml", *store, "--shard", "4/3"], ["--shard: found 4/3", "3/8"]),
                 (["s.toml", *store, "--shard", "x"], ["--shard: found x"]),
                 (["s.toml", *store, "--export", "x.xls"], ["x.xls", ".csv, .json or .npz"]),
                 (["s.toml", *store, "--report", "x.pdf"], ["x.pdf", ".html"]),

@@ -147,7 +147,8 @@ TEST(TrainingSet, RejectsInvalidRanges) {
   TrainingSetOptions bad = dim;
   bad.signal_range = {2.0, 1.0};
   EXPECT_THAT([&] { write(directory.path(), {"1"}, bad); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("signal_range = 2:1; must be a:b")));
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("signal_range = 2:1; must be low and high in e/s")));
   bad.signal_range = {0.0, 1.0};
   EXPECT_THAT([&] { write(directory.path(), {"1"}, bad); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("signal_range = 0:1")));

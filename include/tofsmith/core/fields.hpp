@@ -112,7 +112,8 @@ concept HasFields = requires(Struct& its) {
 };
 
 /// Two numbers that users write as a pair, such as "3/8" on the command line and (3, 8) in Python:
-/// a described struct with a `separator`, the `rule` of valid pairs, and is_valid().
+/// a described struct with the `rule` of valid pairs, is_valid(), and the `separator` and an
+/// `example` for the command line.
 template <typename Struct>
 concept NumberPair = HasFields<Struct> && requires {
   Struct::separator;

@@ -197,7 +197,8 @@ struct SweepShard {
   int count = 1;
 
   static constexpr char separator = '/';
-  static constexpr std::string_view rule = "i/n with i in 1 to n, such as 3/8";
+  static constexpr std::string_view rule = "index and count with 1 <= index <= count";
+  static constexpr std::string_view example = "3/8";
   bool is_valid() const { return index >= 1 && index <= count; }
   /// Returns true if an item belongs to this part, which depends only on its key.
   bool holds(std::string_view key) const;
@@ -257,8 +258,10 @@ struct SweepRunOptions {
 };
 auto fields_of(ConstOrNot<SweepRunOptions> auto& o) {
   return std::tuple(
-      Field("shard", o.shard,
-            Help{"part i/n: compute only the i-th of n parts; sweep merge combines their stores"}),
+      Field(
+          "shard", o.shard,
+          Help{"index and count of parts: compute only one part of the items; sweep merge combines "
+               "the stores of all parts"}),
       Field("batch_s", o.batch_s, above(0).or_infinity(),
             Help{"computing time of the items claimed at a time; lost if killed"}));
 }

@@ -34,7 +34,8 @@ struct LightRange {
   double low_e_per_s = 0.0, high_e_per_s = 0.0;
 
   static constexpr char separator = ':';
-  static constexpr std::string_view rule = "a:b in e/s with 0 < a <= b, such as 1e3:1e5";
+  static constexpr std::string_view rule = "low and high in e/s with 0 < low <= high, or both 0";
+  static constexpr std::string_view example = "1e3:1e5";
   bool is_valid() const {
     return low_e_per_s > 0.0 ? low_e_per_s <= high_e_per_s && std::isfinite(high_e_per_s)
                              : low_e_per_s == 0.0 && high_e_per_s == 0.0;
@@ -55,16 +56,16 @@ struct TrainingSetOptions {
 auto fields_of(ConstOrNot<TrainingSetOptions> auto& o) {
   return std::tuple(
       Field("signal_range", o.signal_range,
-            Help{"range a:b [e/s] from which the signal of each of several scenes is drawn "
+            Help{"range [e/s] from which the signal of each of several scenes is drawn "
                  "log-uniformly"},
-            IfAbsent{"the same for all scenes"}),
+            IfAbsent{"the signal of the capture for all scenes"}),
       Field("ambient_range", o.ambient_range,
-            Help{"range a:b [e/s] from which the ambient light of each of several scenes is drawn "
+            Help{"range [e/s] from which the ambient light of each of several scenes is drawn "
                  "log-uniformly"},
-            IfAbsent{"the same for all scenes"}),
+            IfAbsent{"the ambient light of the capture for all scenes"}),
       Field("shard", o.shard,
-            Help{"part i/n: simulate only the i-th of n parts of the scenes; all parts can have "
-                 "the same output directory"}),
+            Help{"index and count of parts: simulate only one part of the scenes, selected by the "
+                 "names of the scenes; all parts can have the same output directory"}),
       Field("capture", o.capture, FieldMark::apart));
 }
 
