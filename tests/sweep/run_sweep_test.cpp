@@ -207,6 +207,15 @@ TEST(SweepResults, AreEqualInEveryFormat) {
   EXPECT_EQ(arrays.at("code_names").shape(), (NpyShape{2, 14}));
 }
 
+TEST(RunSweep, RejectsInvalidOptions) {
+  const TemporaryDirectory directory;
+  const WorkList list = small_list();
+  const std::vector<std::string> keys = list.keys();
+  SweepStore store = SweepStore::open(directory / "s.sqlite");
+  EXPECT_THROW(run_sweep(list, keys, store, {.shard = {4, 3}}), std::invalid_argument);
+  EXPECT_THROW(run_sweep(list, keys, store, {.batch_s = 0.0}), std::invalid_argument);
+}
+
 TEST(SweepShard, EveryKeyIsInOneShard) {
   for (const char* key : {"00", "ab5a10d454601b56970c164d404ab0a3", "ffffffffffffffff"}) {
     int shards = 0;
