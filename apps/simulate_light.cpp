@@ -64,7 +64,8 @@ void MultipathLightArguments::add_to(CLI::App& command) {
                                            "pixels, or (H,W,T)")
                                ->group(for_experts);
   const FieldOptions options(command, transients_);
-  options.add("bin_s", "--transient-bin-s")->default_str("")->needs(transient)->group(for_experts);
+  transient_bin_ = options.add("bin_s", "--transient-bin-s");
+  transient_bin_->default_str("")->needs(transient)->group(for_experts);
   options.add("origin", "--transient-origin")->needs(transient)->group(for_experts);
   options.add("background", "--transient-background")->needs(transient)->group(for_experts);
   CLI::Option* bounces = command
@@ -97,7 +98,7 @@ SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera
         "of them, because --transient contains all light of a pixel");
   if (!returns_.empty() && !multipath_.empty())
     throw UsageError("--multipath-file: found together with --multipath; expected one of them");
-  if (!transient_.empty() && transients_.bin_s == 0.0)
+  if (!transient_.empty() && transient_bin_->count() == 0)
     throw UsageError(
         "--transient: found no --transient-bin-s; expected the duration of one bin in seconds");
   SceneLight light;

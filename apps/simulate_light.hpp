@@ -35,6 +35,7 @@ class MultipathLightArguments {
   double tail_ratio_ = 0.3;
   std::string returns_, transient_, truth_;
   TransientFileOptions transients_;
+  CLI::Option* transient_bin_ = nullptr;  ///< of the command
   int bounces_ = 0;
   BounceOptions bounce_;
 };

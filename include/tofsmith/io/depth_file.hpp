@@ -66,9 +66,8 @@ struct TransientFileOptions {
 };
 auto fields_of(ConstOrNot<TransientFileOptions> auto& o) {
   return std::tuple(
-      Field("bin_s", o.bin_s, above(0), Help{"duration of one bin of --transient"}),
-      Field("origin", o.origin,
-            Help{"bin of --transient at the depth of the pixel: the first one, or the peak"}),
+      Field("bin_s", o.bin_s, above(0), Help{"duration of one bin of the histograms"}),
+      Field("origin", o.origin, Help{"bin at the depth of the pixel: the first one, or the peak"}),
       Field("background", o.background,
             Help{"constant background to subtract from each histogram before use"}));
 }
