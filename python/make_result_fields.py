@@ -38,7 +38,8 @@ TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", 
 COLUMNS = {"boolean": "npt.NDArray[np.bool_]", "integer": "npt.NDArray[np.int64]",
            "number": "FloatArray", "estimate": "FloatArray", "text": "list[str]"}
 # Types in documentation, if different.
-WORDS = {"FloatArray": "ndarray", "FilePath": "pathlib.Path", "npt.NDArray[np.int64]": "ndarray of int64",
+WORDS = {"FloatArray": "ndarray", "FilePath": "pathlib.Path",
+         "npt.NDArray[np.int64]": "ndarray of int64",
          "npt.NDArray[np.float32]": "ndarray of float32"}
 
 

@@ -18,7 +18,10 @@ namespace {
 TrainingSetOptions set_options(const py::dict& values, const Camera& camera) {
   TrainingSetOptions options;
   CaptureOptions& capture = options.capture;
-  OptionReader(values, "").fields(options).fields(capture).finish();
+  OptionReader(values, "")
+      .fields(options)
+      .fields(capture, {"signal_e_per_s", "ambient_e_per_s"})
+      .finish();
   const OperatingPoint usual = capture_light(camera, capture.reference_distance_m);
   capture.signal_e_per_s = usual.signal_e_per_s;
   capture.ambient_e_per_s = usual.ambient_e_per_s;

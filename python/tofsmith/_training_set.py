@@ -109,7 +109,7 @@ def write_training_set(
         Scenes without a lens use the camera's, or a view 60 degrees wide.
     code : CodeSet, name of a family or file
     camera : Camera or its name
-        Also specifies light without a range: its [optics], or its middle operating point.
+        Its [optics], or its middle operating point, gives the light if there is no range.
     executor : concurrent.futures.Executor or a function that starts one, optional
         Writes the scenes, as in run_sweep(). Its workers must see the directory under the same
         path, and functions among the scenes must be picklable.

@@ -402,7 +402,8 @@ struct IdealCodeFit {
 auto fields_of(ConstOrNot<IdealCodeFit> auto& f) {
   return std::tuple(
       Field("code", f.code),
-      Field("delay_periods", f.delay_periods, Help{"delay of the measured curves"}),
+      Field("delay_periods", f.delay_periods,
+            Help{"delay of the measured curves relative to the code"}),
       Field("reversed", f.reversed, Help{"delay runs in the opposite direction"}),
       Field("inverted", f.inverted, Help{"all signs are opposite"}),
       Field("exposure", f.exposure, Help{"exposure of the code for each measured exposure"}),
@@ -411,7 +412,7 @@ auto fields_of(ConstOrNot<IdealCodeFit> auto& f) {
             Help{"rms residual relative to the rms of the table, without impulse responses"}),
       Field("residual", f.residual, Help{"the same with `response`"}),
       Field("response", f.response,
-            Help{"response of each arm; none if it does not improve the fit"}),
+            Help{"response of each arm, equal for both; none if it does not improve the fit"}),
       Field("parameter_hz", f.parameter_hz, FieldMark::as_object,
             Help{"`f_max_hz` or `cutoff_hz` of `response`"}),
       Field("fitted", f.fitted, Help{"fitted table, (N, K), without means"}),
