@@ -66,9 +66,11 @@ refusals = [
     (made([1]), TypeError, "scenes: got list [1]; needs a dict of names and scenes"),
     (made({}), TypeError, "scenes: got dict {}"),
     (made({3: depths["far.npy"]}), TypeError, "scenes: got int 3; needs a text"),
-    (made(signal_range=(1e5,)), ValueError, "signal_range: got 1 numbers; needs (low_e_per_s, high_e_per_s)"),
+    (made(signal_range=(1e5,)), ValueError,
+     "signal_range: got 1 numbers; needs (low_e_per_s, high_e_per_s)"),
     (made(signal_range=(1e5, 1e3)), ValueError, "signal_range"),
-    (made(ambient_range=("a", "b")), TypeError, "ambient_range: got list ['a', 'b']; needs a list of numbers"),
+    (made(ambient_range=("a", "b")), TypeError,
+     "ambient_range: got list ['a', 'b']; needs a list of numbers"),
     (made(shard=(3, 2)), ValueError, "shard"),
     (made(), OSError, "/proc/none"),
 ]

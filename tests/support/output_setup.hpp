@@ -219,8 +219,9 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   // If the best row is not the nearest one, the kernel extrapolates the signal slightly.
   expect_near(outputs.ambient_e_per_s.pixels, expected.ambient_e_per_s.pixels, 2e-6,
               4e-6 * brightest_e_per_s, "ambient");
-  const std::set compared{DecodedPlane::depth, DecodedPlane::signal, DecodedPlane::ambient,
-                          DecodedPlane::confidence};
+  // Planes compared above, and confidence, which is not compared.
+  const std::set others{DecodedPlane::depth, DecodedPlane::signal, DecodedPlane::ambient,
+                        DecodedPlane::confidence};
   const auto plus = [](float added, std::vector<float> values) {
     for (float& value : values) value += added;
     return values;
@@ -230,7 +231,7 @@ inline void expect_definition(const Outputs& outputs, const Matched& matched) {
         plane,
         [&]<typename Value>(const Image<Value>& values, const Image<Value>& defined) {
           if constexpr (std::is_same_v<Value, float>) {
-            if (compared.contains(plane)) return;
+            if (others.contains(plane)) return;
             const bool has_unit = !description_of(plane).unit.empty();
             const float added = has_unit ? 0.0f : 1.0f;
             expect_similar(plus(added, values.pixels), plus(added, defined.pixels),
