@@ -196,8 +196,7 @@ Answer command_answer(const CameraArguments& camera, const CommandArguments& arg
   const std::string name = arguments.camera_file.value_or(camera.built_in.value_or(""));
   const std::string settings = settings_words(camera);
   const std::string camera_words = (name.empty() ? "" : " --camera " + shell_word(name)) + settings;
-  const std::string trials =
-      option("--trials", arguments.trials) + option("--seed", arguments.seed);
+  const std::string seed = option("--seed", arguments.seed);
   std::vector<std::string> codes = arguments.codes;
   for (std::string& code : codes) code = shell_word(code);
   const auto first_code = [&] {
@@ -212,14 +211,15 @@ Answer command_answer(const CameraArguments& camera, const CommandArguments& arg
     command = "tofsmith codes " + first_code() + camera_words;
   } else if (arguments.what == Command::evaluate) {
     first_code();
-    command = fmt::format("tofsmith evaluate {}{}{}", fmt::join(codes, " "), camera_words, trials);
+    command = fmt::format("tofsmith evaluate {}{}", fmt::join(codes, " "), camera_words) +
+              option("--trials", arguments.trials) + seed;
   } else if (arguments.what == Command::scene) {
     command = scene_commands(scene, first_code(), camera_words);
   } else if (arguments.what == Command::design) {
     command = "tofsmith design" + camera_words;
     if (design.method) command += fmt::format(" --method {}", name_of(*design.method));
-    command += option("--exposures", design.exposures) + option("--effort", design.effort) +
-               trials + " -o design";
+    command += option("--exposures", design.exposures) + option("--effort", design.effort) + seed +
+               " -o design";
   } else {
     command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), camera_words);
   }
