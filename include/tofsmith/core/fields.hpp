@@ -111,9 +111,8 @@ concept HasFields = requires(Struct& its) {
   fields_of(its);
 };
 
-/// Two numbers that users write as a pair, such as "3/8" on the command line and (3, 8) in Python:
-/// a described struct with the `rule` of valid pairs, is_valid(), and the `separator` and an
-/// `example` for the command line.
+/// Two numbers, written as "3/8" on the command line and as (3, 8) in Python: a described struct
+/// with a `rule`, is_valid(), and a `separator` and an `example` for the command line.
 template <typename Struct>
 concept NumberPair = HasFields<Struct> && requires {
   Struct::separator;

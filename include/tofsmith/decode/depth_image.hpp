@@ -56,8 +56,7 @@ constexpr auto words_of(ReturnStatus /*any*/) {
   return word_list("none", "single", "two", "unresolved");
 }
 
-/// Origin of a plane, and whether it is written by default. A GPU computes only the planes `usual`
-/// and `on_request`.
+/// Origin of a plane, and whether it is written by default. A GPU computes only the first two.
 enum class PlaneUse {
   usual,       ///< from every decoder, by default
   on_request,  ///< from every decoder
