@@ -9,18 +9,22 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <climits>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "camera/shared/listed_exposures.hpp"
 #include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "core/shared/random.hpp"
+#include "core/shared/shared_progress.hpp"
 #include "design/judge.hpp"
 #include "design/rows/dim_light.hpp"
+#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
@@ -32,21 +36,40 @@ using std::numbers::pi;
 
 /// Minimum, because depth is interpolated linearly between bins.
 constexpr int min_bins_per_period = 6;
-constexpr int drawn_sets = 400, bettered_sets = 12, steps_per_set = 60, judged_sets = 8;
-constexpr int rounds_of_light = 12;
+constexpr int rounds_of_light = 12, drawn_sets = 400;
+constexpr int judged_sets = 4;  // of each search
 
-/// More side lobes matter in dimmer light: 1 % more error is accepted for 40 % less at a tenth of
-/// the light, up to 3 % in total.
-constexpr double dim_weight = 0.02, max_loss = 1.03;
+/// Simulated annealing from the best sets: first of those drawn, then of those found. A step is
+/// accepted if it increases the logarithm of the score by less than an exponentially distributed
+/// number, whose mean decreases linearly from `temperature` to 0 after 4/5 of the steps.
+struct AnnealingStage {
+  int chains, steps;
+  double temperature;
+};
+constexpr std::array stages = {AnnealingStage{12, 100, 0.0}, AnnealingStage{8, 1500, 0.1}};
+constexpr double cold_after = 0.8, same_tones = 0.3;  // shares of the steps
+
+/// Exponents in the score e d^dim r^rms of the error e, the error d at a tenth of the light, and
+/// the root mean square error r.
+struct Weights {
+  double dim = 0.0, rms = 0.0;
+};
+double score_of(double error_m, double dim_error_m, double rms_m, Weights weights) {
+  return error_m * std::pow(dim_error_m, weights.dim) * std::pow(rms_m, weights.rms);
+}
+/// Side lobes matter more in dimmer light and for the root mean square error: 1 % more error is
+/// accepted for 40 % less at a tenth of the light or for 10 % less root mean square error (unless
+/// it is minimized itself), up to 5 % in total.
+Weights preferred_on(const Camera& camera) {
+  return {.dim = 0.02, .rms = camera.operating.statistic == ErrorStatistic::rmse ? 0.0 : 0.1};
+}
+constexpr double max_loss = 1.05;
 
 /// Monte Carlo trials in units of DesignOptions::search_trials, for all operating points together.
 constexpr int first_trials = 5, dim_trials = 2;
 constexpr std::int64_t most_trials = 4'000'000'000;  // limit of evaluate()
-struct FinalRound {
-  std::size_t sets;
-  int trials;
-};
-constexpr std::array final_rounds = {FinalRound{6, 30}, FinalRound{3, 100}};
+/// Number of sets in the final rounds, and their trials.
+constexpr std::array<std::pair<std::size_t, int>, 2> final_rounds = {{{4, 20}, {3, 80}}};
 
 using Tones = std::vector<int>;
 
@@ -59,10 +82,12 @@ int rows_of_tones(const Camera& camera, int rows) {
 struct ToneCode {
   Tones tones;
   Eigen::VectorXd light;  // (N)
-  double foreseen_m = infinity;
+  double foreseen_m = infinity, rms_foreseen_m = infinity;
   double dim_foreseen_m = infinity;  // at dim_share of the light
 
-  double score(double weight) const { return foreseen_m * std::pow(dim_foreseen_m, weight); }
+  double score(Weights weights) const {
+    return score_of(foreseen_m, dim_foreseen_m, rms_foreseen_m, weights);
+  }
 };
 
 class ToneSearch {
@@ -78,11 +103,11 @@ class ToneSearch {
         response_(camera.band_limited()
                       ? camera.transfer(transform_.coefficients() - 1).conjugate().eval()
                       : Eigen::VectorXcd::Ones(transform_.coefficients()).eval()),
-        cosine_(samples_),
-        sine_(samples_) {
-    for (int n = 0; n < samples_; ++n) {
-      cosine_[n] = std::cos(2 * pi * n / samples_);
-      sine_[n] = std::sin(2 * pi * n / samples_);
+        cosine_(2 * samples_),
+        sine_(2 * samples_) {
+    for (int n = 0; n < 2 * samples_; ++n) {
+      cosine_[n] = std::cos(pi * n / samples_);
+      sine_[n] = std::sin(pi * n / samples_);
     }
     for (Eigen::Index n = 1; n < response_.size(); ++n) {
       const double x = pi * static_cast<double>(n) / samples_;
@@ -105,13 +130,12 @@ class ToneSearch {
       drawn.insert(std::clamp(static_cast<int>(std::lround(tone)), 1, highest_));
       if (random.uniform() < 0.1) drawn.insert(any_tone(random));
     }
-    Tones tones_drawn(drawn.begin(), drawn.end());
-    tones_drawn.resize(static_cast<std::size_t>(tones()));
-    return tones_drawn;
+    return Tones(drawn.begin(), std::next(drawn.begin(), tones()));
   }
 
-  /// Moves one tone, unless the new one is taken.
+  /// Moves one tone, or returns the same tones, for which code_of() draws other light.
   Tones stepped(const Tones& from, RandomStream& random) const {
+    if (random.uniform() < same_tones) return from;
     Tones tones = from;
     const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(tones.size()));
     int& tone = tones[std::min(at, tones.size() - 1)];
@@ -154,7 +178,7 @@ class ToneSearch {
       for (int n = 0; n < samples_; ++n) {
         // Centre of the bin, in half samples.
         const int at = static_cast<int>(tone * (2 * n + 1) % (2 * samples_));
-        weights(n, k) = k % 2 == 0 ? std::cos(pi * at / samples_) : std::sin(pi * at / samples_);
+        weights(n, k) = (k % 2 == 0 ? cosine_ : sine_)[at];
       }
     }
     return weights;
@@ -169,31 +193,29 @@ class ToneSearch {
       phase[i] = 2 * pi * random.uniform();
     }
     std::vector<int> order(static_cast<std::size_t>(samples_));
-    Eigen::VectorXd sum(samples_);
-    std::vector<char> was_on, is_on(static_cast<std::size_t>(samples_));
+    Eigen::VectorXd sum(samples_), is_on, was_on = Eigen::VectorXd::Zero(samples_);
     for (int round = 0; round < rounds_of_light; ++round) {
       sum.setZero();
       for (Eigen::Index i = 0; i < count; ++i) {
         const int tone = code.tones[static_cast<std::size_t>(i)];
         const double c = weight[i] * amplitude[i] * std::cos(phase[i]);
         const double s = weight[i] * amplitude[i] * std::sin(phase[i]);
-        for (int n = 0; n < samples_; ++n) {
-          const int at = static_cast<int>(std::int64_t{tone} * n % samples_);
+        for (int n = 0, at = 0; n < samples_; ++n, at += 2 * tone) {
+          if (at >= 2 * samples_) at -= 2 * samples_;
           sum[n] += c * cosine_[at] - s * sine_[at];
         }
       }
       std::iota(order.begin(), order.end(), 0);
       std::nth_element(order.begin(), order.begin() + on_bins_ - 1, order.end(),
                        [&](int a, int b) { return sum[a] != sum[b] ? sum[a] > sum[b] : a < b; });
-      std::fill(is_on.begin(), is_on.end(), char{0});
-      for (int i = 0; i < on_bins_; ++i)
-        is_on[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = 1;
+      is_on.setZero(samples_);
+      for (int i = 0; i < on_bins_; ++i) is_on[order[static_cast<std::size_t>(i)]] = 1.0;
       for (Eigen::Index i = 0; i < count; ++i) {
         const int tone = code.tones[static_cast<std::size_t>(i)];
         double c = 0.0, s = 0.0;
         for (int j = 0; j < on_bins_; ++j) {
           const std::int64_t n = order[static_cast<std::size_t>(j)];
-          const int at = static_cast<int>(tone * n % samples_);
+          const auto at = static_cast<Eigen::Index>(2 * (tone * n % samples_));
           c += cosine_[at], s -= sine_[at];
         }
         amplitude[i] = std::hypot(c, s) / on_bins_;
@@ -202,10 +224,7 @@ class ToneSearch {
       if (is_on == was_on) break;
       was_on = is_on;
     }
-    code.light.resize(samples_);
-    for (int n = 0; n < samples_; ++n)
-      code.light[n] =
-          is_on[static_cast<std::size_t>(n)] != 0 ? static_cast<double>(samples_) / on_bins_ : 0.0;
+    code.light = is_on * (static_cast<double>(samples_) / on_bins_);
   }
 
   void foresee(ToneCode& code) const {
@@ -227,7 +246,8 @@ class ToneSearch {
       slope.head(2) *= std::sqrt(0.5);
     }
 
-    const auto error_m = [&](const OperatingPoint& point) {
+    // Of the mean absolute and the root mean square error.
+    const auto logarithms_of = [&](const OperatingPoint& point) {
       const double signal_e = exposure_s * camera_.operating.albedo * point.signal_e_per_s;
       const double other_e = exposure_s * (point.ambient_e_per_s + sensor.dark_current_e_per_s);
       const double read_e2 = sensor.read_noise_e * sensor.read_noise_e;
@@ -244,20 +264,23 @@ class ToneSearch {
       Eigen::VectorXd power(static_cast<Eigen::Index>(code.tones.size()));
       for (Eigen::Index i = 0; i < power.size(); ++i)
         power[i] = mean.segment(2 * i, 2).squaredNorm() * signal_e * signal_e / variance_e2;
-      if (camera_.operating.statistic == ErrorStatistic::rmse)
-        return std::min(std::sqrt(local_rms_m * local_rms_m + lobes(code.tones, power, 2)),
-                        range_m / std::sqrt(12.0));
-      return std::min(std::sqrt(2 / pi) * local_rms_m + lobes(code.tones, power, 1),
-                      0.25 * range_m);
+      const auto [lobes_m, lobes_m2] = lobes(code.tones, power);
+      const double mean_m = std::min(0.25 * range_m, std::sqrt(2 / pi) * local_rms_m + lobes_m);
+      const double rms_m =
+          std::min(range_m / std::sqrt(12.0), std::sqrt(local_rms_m * local_rms_m + lobes_m2));
+      return Eigen::Array2d(std::log(mean_m), std::log(rms_m));
     };
-    const auto mean_m = [&](const Camera& camera) {
-      double logarithms = 0.0;
+    const auto errors_m = [&](const Camera& camera) {
+      Eigen::Array2d logarithms = Eigen::Array2d::Zero();
       const std::vector<OperatingPoint> points = camera.operating.points();
-      for (const OperatingPoint& point : points) logarithms += std::log(error_m(point));
-      return std::exp(logarithms / static_cast<double>(points.size()));
+      for (const OperatingPoint& point : points) logarithms += logarithms_of(point);
+      return Eigen::Array2d((logarithms / static_cast<double>(points.size())).exp());
     };
-    code.foreseen_m = mean_m(camera_);
-    code.dim_foreseen_m = mean_m(dim_);
+    const int statistic = camera_.operating.statistic == ErrorStatistic::rmse ? 1 : 0;
+    const Eigen::Array2d errors = errors_m(camera_);
+    code.foreseen_m = errors[statistic];
+    code.rms_foreseen_m = errors[1];
+    code.dim_foreseen_m = errors_m(dim_)[statistic];
   }
 
   /// Derivative per period of depth, from the mean at depth 0.
@@ -270,8 +293,8 @@ class ToneSearch {
     return slope;
   }
 
-  /// Sum over lobes of row_candidates() with (|u| R)^exponent [m^exponent].
-  double lobes(const Tones& tones, const Eigen::VectorXd& power, int exponent) const {
+  /// Sums over lobes of row_candidates() with |u| R [m] and with (u R)^2 [m^2].
+  std::array<double, 2> lobes(const Tones& tones, const Eigen::VectorXd& power) const {
     // At u = j / points, 8 per period of the highest tone; minima by parabolas.
     const int points = std::min(samples_, 8 * tones.back());
     const int half = points / 2;
@@ -281,7 +304,7 @@ class ToneSearch {
         apart[static_cast<std::size_t>(j)] +=
             power[i] *
             (1.0 - cosine_of(static_cast<double>(tones[static_cast<std::size_t>(i)]) * j / points));
-    double error = 0.0;
+    std::array<double, 2> sums = {};
     for (int j = 1; j <= half; ++j) {
       const double here = apart[static_cast<std::size_t>(j)];
       const double before = apart[static_cast<std::size_t>(j) - 1];
@@ -289,30 +312,32 @@ class ToneSearch {
       if (here > before || here > after) continue;
       const double bend = before + after - 2 * here, tilt = after - before;
       const double least = bend > 0.0 ? std::max(0.0, here - tilt * tilt / (8 * bend)) : here;
-      error +=
-          std::pow(camera_.range_m() * j / points, exponent) * std::erfc(0.5 * std::sqrt(least));
+      const double apart_m = camera_.range_m() * j / points;
+      const double probability = std::erfc(0.5 * std::sqrt(least));
+      sums[0] += apart_m * probability;
+      sums[1] += apart_m * apart_m * probability;
     }
-    return error;
+    return sums;
   }
 
   double cosine_of(double turns) const {
     const double part = turns - std::floor(turns);
-    return cosine_[std::min(static_cast<int>(part * samples_ + 0.5), samples_ - 1)];
+    return cosine_[2 * std::min(static_cast<int>(part * samples_ + 0.5), samples_ - 1)];
   }
 
   const Camera& camera_;
   Camera dim_;
   int read_rows_, rows_, samples_, highest_;
   PeriodicTransform transform_;
-  Eigen::VectorXcd response_;  // of both arms, all harmonics of the bins
-  Eigen::VectorXd transfer_;   // |H_n| of arms and bins
-  Eigen::VectorXd cosine_, sine_;
+  Eigen::VectorXcd response_;      // of both arms, all harmonics of the bins
+  Eigen::VectorXd transfer_;       // |H_n| of arms and bins
+  Eigen::VectorXd cosine_, sine_;  // of half bins
   int best_ = 1, on_bins_ = 1;
 };
 
-void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
-  std::stable_sort(codes.begin(), codes.end(), [weight](const ToneCode& a, const ToneCode& b) {
-    return a.score(weight) < b.score(weight);
+void keep_best(std::vector<ToneCode>& codes, int count, Weights weights) {
+  std::stable_sort(codes.begin(), codes.end(), [weights](const ToneCode& a, const ToneCode& b) {
+    return a.score(weights) < b.score(weights);
   });
   std::vector<ToneCode> kept;
   for (ToneCode& code : codes) {
@@ -330,45 +355,74 @@ std::int64_t by_effort(double count, const DesignOptions& options) {
   return std::max<std::int64_t>(1, std::llround(count * effort));
 }
 
+/// Returns the best code of all steps.
+ToneCode annealed(const ToneSearch& search, ToneCode code, Weights weights,
+                  const AnnealingStage& stage, std::int64_t steps, RandomStream& random,
+                  SharedProgress& progress) {
+  ToneCode best = code;
+  for (std::int64_t step = 0; step < steps; ++step) {
+    progress.add();
+    ToneCode tried = search.code_of(search.stepped(code.tones, random), random);
+    const double part = static_cast<double>(step) / static_cast<double>(steps);
+    const double temperature = stage.temperature * std::max(0.0, 1.0 - part / cold_after);
+    const double accepted = code.score(weights) * std::pow(1.0 - random.uniform(), -temperature);
+    if (tried.score(weights) < best.score(weights)) best = tried;
+    if (tried.score(weights) < accepted) code = std::move(tried);
+  }
+  return best;
+}
+
 /// Selects by rounds with fewer sets and more trials.
 std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& codes,
                       const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
   struct Judged {
-    std::size_t index;
-    double error_m, dim_error_m;
-    double score() const { return error_m * std::pow(dim_error_m, dim_weight); }
+    std::size_t index = 0;
+    double error_m = infinity, dim_error_m = infinity, rms_m = infinity;
   };
-  const auto by_score = [](const Judged& a, const Judged& b) { return a.score() < b.score(); };
+  const auto score = [weights = preferred_on(camera)](const Judged& code) {
+    return score_of(code.error_m, code.dim_error_m, code.rms_m, weights);
+  };
+  const auto by_score = [&](const Judged& a, const Judged& b) { return score(a) < score(b); };
   const auto by_error = [](const Judged& a, const Judged& b) { return a.error_m < b.error_m; };
   const auto points = static_cast<int>(camera.operating.points().size());
-  const auto error_m = [&](std::size_t index, const Camera& on, int times) {
+  const auto evaluated = [&](std::size_t index, const Camera& on, int times) {
     const double trials = static_cast<double>(times) * options.search_trials / points;
     const EvaluateOptions judging{
         .trials = std::clamp<std::int64_t>(by_effort(trials, options), options.search_trials,
                                            most_trials),
         .seed = search_seed(options),
         .bounds = false};
-    return geometric_mean_error_m(evaluate(search.code_set(codes[index]), on, judging),
-                                  camera.operating.measure());
+    return evaluate(search.code_set(codes[index]), on, judging);
   };
+  const DepthErrorMeasure measure = camera.operating.measure();
+  // Circular, because wrong lobes matter and not depths at the ends of the range.
+  const DepthErrorMeasure rms = {DepthErrorKind::circular, ErrorStatistic::rmse};
   const Camera dim = in_share_of_light(camera, dim_share);
   const ProgressParts parts(progress, {20, 30, 50});
-  std::vector<Judged> judged;
+  // Means with predictions: few trials have wrong lobes, which the predictions contain.
+  const auto judge_in_full_light = [&](Judged& code, int times) {
+    const DepthErrorReport error = evaluated(code.index, camera, times);
+    const ToneCode& foreseen = codes[code.index];
+    code.error_m = std::sqrt(foreseen.foreseen_m * geometric_mean_error_m(error, measure));
+    code.rms_m = std::sqrt(foreseen.rms_foreseen_m * geometric_mean_error_m(error, rms));
+  };
+  std::vector<Judged> judged(codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    // For similar sets, the prediction is as good as a few trials.
-    judged.push_back({i, std::sqrt(codes[i].foreseen_m * error_m(i, camera, first_trials)),
-                      error_m(i, dim, dim_trials)});
+    judged[i].index = i;
+    judge_in_full_light(judged[i], first_trials);
+    judged[i].dim_error_m = geometric_mean_error_m(evaluated(i, dim, dim_trials), measure);
     report(parts[0], static_cast<double>(i + 1) / static_cast<double>(codes.size()), "rows");
   }
   for (std::size_t round = 0; round < final_rounds.size(); ++round) {
-    const std::size_t sets = std::min(final_rounds[round].sets, judged.size());
+    const auto [most_sets, trials] = final_rounds[round];
+    const std::size_t sets = std::min(most_sets, judged.size());
     std::stable_sort(judged.begin(), judged.end(), by_score);
     const auto least = std::min_element(judged.begin(), judged.end(), by_error);
     if (static_cast<std::size_t>(least - judged.begin()) >= sets) judged[sets - 1] = *least;
     judged.resize(sets);
     for (std::size_t i = 0; i < sets; ++i) {
-      judged[i].error_m = error_m(judged[i].index, camera, final_rounds[round].trials);
+      judge_in_full_light(judged[i], trials);
       report(parts[1 + round], static_cast<double>(i + 1) / static_cast<double>(sets), "rows");
     }
   }
@@ -378,12 +432,6 @@ std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& cod
 }
 
 }  // namespace
-
-std::vector<int> designable_rows(const DesignOptions& options) {
-  return options.exposures.empty() ? std::vector<int>{8} : options.exposures;
-}
-
-std::string rows_name(int rows) { return fmt::format("tones-k{}", rows); }
 
 std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows) {
   if (camera.light.peak_factor <= 1.0)
@@ -404,45 +452,46 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   const Camera camera = judged_camera(on);
   require(why_no_row_design(camera, rows));
   const ToneSearch search(camera, rows);
-  const ProgressParts parts(progress, {20, 40, 40});
+  const ProgressParts parts(progress, {40, 60});
   const std::uint64_t seed = search_seed(options);
 
-  std::vector<ToneCode> codes;
-  const auto drawn = static_cast<int>(by_effort(drawn_sets, options)),
-             bettered = static_cast<int>(by_effort(bettered_sets, options));
-  for (int i = 0; i < drawn; ++i) {
-    RandomStream random(seed, static_cast<std::uint64_t>(i), 0);
-    codes.push_back(search.code_of(search.draw(random), random));
-    report(parts[0], static_cast<double>(i + 1) / drawn, "rows");
-  }
-
-  const std::vector<ToneCode> at_random = std::move(codes);
-  codes.clear();
-  for (std::uint32_t turn = 0; turn < 2; ++turn) {
-    const double weight = turn == 0 ? 0.0 : dim_weight;
+  const std::array searched = {Weights{}, preferred_on(camera)};
+  const std::int64_t drawn = by_effort(drawn_sets, options);
+  std::int64_t all = drawn;
+  for (const AnnealingStage& stage : stages)
+    all += std::ssize(searched) * stage.chains * by_effort(stage.steps, options);
+  SharedProgress shared(parts[0], static_cast<double>(all), "rows");
+  std::vector<ToneCode> at_random(static_cast<std::size_t>(drawn)), codes;
+  parallel_for_indices(at_random.size(), [&](std::size_t i) {
+    shared.add();
+    RandomStream random(seed, i, 0);
+    at_random[i] = search.code_of(search.draw(random), random);
+  });
+  std::uint32_t turn = 0;
+  for (const Weights weights : searched) {
     std::vector<ToneCode> better = at_random;
-    keep_best(better, bettered, weight);
-    for (std::size_t i = 0; i < better.size(); ++i) {
-      RandomStream random(seed, i, 1 + turn);
-      for (int step = 0; step < steps_per_set; ++step) {
-        ToneCode tried = search.code_of(search.stepped(better[i].tones, random), random);
-        if (tried.score(weight) < better[i].score(weight)) better[i] = std::move(tried);
-      }
-      report(parts[1],
-             (turn + static_cast<double>(i + 1) / static_cast<double>(better.size())) / 2.0,
-             "rows");
+    for (const AnnealingStage& stage : stages) {
+      keep_best(better, stage.chains, weights);
+      const std::vector<ToneCode> starts =
+          std::exchange(better, std::vector<ToneCode>(static_cast<std::size_t>(stage.chains)));
+      ++turn;
+      parallel_for_indices(better.size(), [&](std::size_t i) {
+        RandomStream random(seed, i, turn);
+        better[i] = annealed(search, starts[i % starts.size()], weights, stage,
+                             by_effort(stage.steps, options), random, shared);
+      });
     }
-    keep_best(better, judged_sets, weight);
+    keep_best(better, judged_sets, weights);
     std::move(better.begin(), better.end(), std::back_inserter(codes));
   }
-  keep_best(codes, 2 * judged_sets, dim_weight);
+  keep_best(codes, static_cast<int>(searched.size()) * judged_sets, preferred_on(camera));
 
-  const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[2])];
+  const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[1])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   Candidate candidate{.code = signed_by(search.code_set(tones), "optimize", on, options.seed),
                       .method = "optimize"};
   candidate.seconds = taken.count();
-  candidate.iterations = drawn + 2 * bettered * steps_per_set;
+  candidate.iterations = static_cast<int>(std::min<std::int64_t>(all, INT_MAX));
   candidate.message = fmt::format("tones {}", fmt::join(tones.tones, ", "));
   candidate.per_measurement.resize(static_cast<std::size_t>(rows));
   return {std::move(candidate)};
