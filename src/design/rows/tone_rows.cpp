@@ -36,14 +36,13 @@ using std::numbers::pi;
 
 /// Minimum, because depth is interpolated linearly between bins.
 constexpr int min_bins_per_period = 6;
-constexpr int rounds_of_light = 12, drawn_sets = 400;
-constexpr int judged_sets = 4;  // of each search
+constexpr int rounds_of_light = 12, drawn_sets = 400, judged_sets = 4;  // judged: per search
 
 /// Simulated annealing from the best sets: first of those drawn, then of those found. A step is
 /// accepted if it increases the logarithm of the score by less than an exponentially distributed
-/// number, whose mean decreases linearly from `temperature` to 0 after 4/5 of the steps.
+/// number, whose mean decreases linearly from `temperature` to 0 within `cold_after` of the steps.
 struct AnnealingStage {
-  int chains, steps;
+  std::int64_t chains, steps;
   double temperature;
 };
 constexpr std::array stages = {AnnealingStage{12, 100, 0.0}, AnnealingStage{8, 1500, 0.1}};
@@ -68,7 +67,7 @@ constexpr double max_loss = 1.05;
 /// Monte Carlo trials in units of DesignOptions::search_trials, for all operating points together.
 constexpr int first_trials = 5, dim_trials = 2;
 constexpr std::int64_t most_trials = 4'000'000'000;  // limit of evaluate()
-/// Number of sets in the final rounds, and their trials.
+/// Numbers of sets and of trials in the final rounds.
 constexpr std::array<std::pair<std::size_t, int>, 2> final_rounds = {{{4, 20}, {3, 80}}};
 
 using Tones = std::vector<int>;
@@ -246,7 +245,7 @@ class ToneSearch {
       slope.head(2) *= std::sqrt(0.5);
     }
 
-    // Of the mean absolute and the root mean square error.
+    // Logarithms of the mean absolute and the root mean square error.
     const auto logarithms_of = [&](const OperatingPoint& point) {
       const double signal_e = exposure_s * camera_.operating.albedo * point.signal_e_per_s;
       const double other_e = exposure_s * (point.ambient_e_per_s + sensor.dark_current_e_per_s);
@@ -335,13 +334,13 @@ class ToneSearch {
   int best_ = 1, on_bins_ = 1;
 };
 
-void keep_best(std::vector<ToneCode>& codes, int count, Weights weights) {
+void keep_best(std::vector<ToneCode>& codes, std::int64_t count, Weights weights) {
   std::stable_sort(codes.begin(), codes.end(), [weights](const ToneCode& a, const ToneCode& b) {
     return a.score(weights) < b.score(weights);
   });
   std::vector<ToneCode> kept;
   for (ToneCode& code : codes) {
-    if (static_cast<int>(kept.size()) == count) break;
+    if (std::ssize(kept) == count) break;
     if (std::none_of(kept.begin(), kept.end(),
                      [&](const ToneCode& other) { return other.tones == code.tones; }))
       kept.push_back(std::move(code));
@@ -357,13 +356,12 @@ std::int64_t by_effort(double count, const DesignOptions& options) {
 
 /// Returns the best code of all steps.
 ToneCode annealed(const ToneSearch& search, ToneCode code, Weights weights,
-                  const AnnealingStage& stage, std::int64_t steps, RandomStream& random,
-                  SharedProgress& progress) {
+                  const AnnealingStage& stage, RandomStream& random, SharedProgress& progress) {
   ToneCode best = code;
-  for (std::int64_t step = 0; step < steps; ++step) {
+  for (std::int64_t step = 0; step < stage.steps; ++step) {
     progress.add();
     ToneCode tried = search.code_of(search.stepped(code.tones, random), random);
-    const double part = static_cast<double>(step) / static_cast<double>(steps);
+    const double part = static_cast<double>(step) / static_cast<double>(stage.steps);
     const double temperature = stage.temperature * std::max(0.0, 1.0 - part / cold_after);
     const double accepted = code.score(weights) * std::pow(1.0 - random.uniform(), -temperature);
     if (tried.score(weights) < best.score(weights)) best = tried;
@@ -396,11 +394,11 @@ std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& cod
     return evaluate(search.code_set(codes[index]), on, judging);
   };
   const DepthErrorMeasure measure = camera.operating.measure();
-  // Circular, because wrong lobes matter and not depths at the ends of the range.
+  // Circular: depths that wrap at the ends of the range are not wrong lobes.
   const DepthErrorMeasure rms = {DepthErrorKind::circular, ErrorStatistic::rmse};
   const Camera dim = in_share_of_light(camera, dim_share);
   const ProgressParts parts(progress, {20, 30, 50});
-  // Means with predictions: few trials have wrong lobes, which the predictions contain.
+  // Geometric means of Monte Carlo and predicted errors: few trials may contain no wrong lobe.
   const auto judge_in_full_light = [&](Judged& code, int times) {
     const DepthErrorReport error = evaluated(code.index, camera, times);
     const ToneCode& foreseen = codes[code.index];
@@ -458,8 +456,11 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   const std::array searched = {Weights{}, preferred_on(camera)};
   const std::int64_t drawn = by_effort(drawn_sets, options);
   std::int64_t all = drawn;
-  for (const AnnealingStage& stage : stages)
-    all += std::ssize(searched) * stage.chains * by_effort(stage.steps, options);
+  std::array annealing = stages;
+  for (AnnealingStage& stage : annealing) {
+    stage.steps = by_effort(static_cast<double>(stage.steps), options);
+    all += std::ssize(searched) * stage.chains * stage.steps;
+  }
   SharedProgress shared(parts[0], static_cast<double>(all), "rows");
   std::vector<ToneCode> at_random(static_cast<std::size_t>(drawn)), codes;
   parallel_for_indices(at_random.size(), [&](std::size_t i) {
@@ -470,21 +471,20 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   std::uint32_t turn = 0;
   for (const Weights weights : searched) {
     std::vector<ToneCode> better = at_random;
-    for (const AnnealingStage& stage : stages) {
+    for (const AnnealingStage& stage : annealing) {
       keep_best(better, stage.chains, weights);
       const std::vector<ToneCode> starts =
           std::exchange(better, std::vector<ToneCode>(static_cast<std::size_t>(stage.chains)));
       ++turn;
       parallel_for_indices(better.size(), [&](std::size_t i) {
         RandomStream random(seed, i, turn);
-        better[i] = annealed(search, starts[i % starts.size()], weights, stage,
-                             by_effort(stage.steps, options), random, shared);
+        better[i] = annealed(search, starts[i % starts.size()], weights, stage, random, shared);
       });
     }
     keep_best(better, judged_sets, weights);
     std::move(better.begin(), better.end(), std::back_inserter(codes));
   }
-  keep_best(codes, static_cast<int>(searched.size()) * judged_sets, preferred_on(camera));
+  keep_best(codes, std::ssize(searched) * judged_sets, preferred_on(camera));
 
   const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[1])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
